@@ -18,8 +18,8 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "geometry/flat_noise.hpp"
 #include "geometry/make_mesh.hpp"
+#include "geometry/rounding.hpp"
 #include "mesh/wording.hpp"
 #include "operators/round_boundary.hpp"
 
@@ -58,20 +58,14 @@ Neighbours<Dim> neighbours_of(const Executor& executor, const Mesh<Dim>& mesh) {
   return neighbours;
 }
 
-/// Warns if faces that are flat except for noise keep all their vertices.
-template <int Dim>
-void warn_of_noise(const Executor& executor, const AnyMesh& input, const AnyMesh& adapted,
-                   std::vector<std::string>& warnings) {
+/// Says that faces that are flat except for this noise keep all their vertices.
+std::string warning_of_noise(const std::string& mesh, double noise) {
   constexpr double margin = 2;  // because the surface that is approximated has noise, too
-  // The input has more facets to judge by, unless it leaves them out.
-  const AnyMesh& judged = facets_in<Dim>(input).size() > 0 ? input : adapted;
-  const double noise = noise_in_flat_faces<Dim>(executor, judged);
-  if (!(noise > 0)) return;
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.2g", margin * noise);
-  warnings.push_back(name_of(input) + ": boundary faces are flat up to " + text.data() +
-                     ", probably by rounding; -hausd " + text.data() +
-                     " (hausdorff_tolerance) lets them be coarsened");
+  return mesh + ": boundary faces are flat up to " + text.data() +
+         ", probably by rounding; -hausd " + text.data() +
+         " (hausdorff_tolerance) lets them be coarsened";
 }
 
 /// The input, set up to be adapted to one metric after another. An attempt whose result is not
@@ -132,7 +126,8 @@ class Attempt {
     count_edges(executor_, mesh_, options_.rules, report_);
     const bool has_short = has_short_facets(executor_, mesh_, options_.rules);
     auto [mesh, metric] = take_apart(executor_, std::move(mesh_));
-    if (has_short && is_flat_) warn_of_noise<Dim>(executor_, input_, mesh, report_.warnings);
+    if (has_short && is_flat_ && noise_ > 0)
+      report_.warnings.push_back(warning_of_noise(name_of(input_), noise_));
     return {std::move(mesh), std::move(metric), std::move(report_)};
   }
 
@@ -173,6 +168,7 @@ class Attempt {
     mesh_ = {};  // before there is another
     mesh_ = make_mesh<Dim>(executor_, input_, options_.make, neighbours, report_.warnings);
     may_meet_ = mesh_.surface || has_crack_sides(mesh_);
+    noise_ = mesh_.rounding ? mesh_.rounding->noise : 0;
     report_.fixed_vertices = fixed_vertices(executor_, mesh_);
     return neighbours;
   }
@@ -189,7 +185,11 @@ class Attempt {
     runtime::parallel_for(executor_, metric_of.size(),
                           [&](std::size_t v) { metric_of[v] = mesh_.site_of[v].metric; });
     const double before = complexity_of_demand(executor_, mesh_, metric_of);
-    limit_sizes(executor_, mesh_, options_, metric_of);
+    // A geometry may have features between the vertices that were asked.
+    if (options_.make.geometry)
+      limit_sizes(executor_, mesh_, options_, metric_of);
+    else
+      limit_growth(executor_, mesh_, options_, metric_of);
     if (complexity_of_demand(executor_, mesh_, metric_of) < much * before) return std::nullopt;
     expect_possible(executor_, mesh_, options_, metric_of, name_);
     Neighbours<Dim> neighbours = neighbours_of(executor_, mesh_);
@@ -208,6 +208,7 @@ class Attempt {
   std::optional<MeshWithMetric> copy_;  ///< of the mesh
   AdaptReport report_;
   bool may_meet_ = false;
+  double noise_ = 0;  ///< in flat faces
 };
 
 }  // namespace

@@ -58,32 +58,37 @@ inline bool limits_growth(const AdaptOptions& options) {
   return options.gradation > 0 || options.curved_sizes;
 }
 
-/// Makes the metrics keep the bounds and the growth that the options allow. Returns sentences about
-/// what it could not do.
+/// Makes the metrics keep the growth that the options allow, within the bounds. Returns sentences
+/// about what it could not do.
 template <int Dim>
-std::vector<std::string> limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                     const AdaptOptions& options,
-                                     std::vector<Metric<Dim>>& metric_of) {
+std::vector<std::string> limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                      const AdaptOptions& options,
+                                      std::vector<Metric<Dim>>& metric_of) {
   std::vector<std::string> warnings;
-  const auto bound = [&] {
-    bound_sizes(executor, metric_of, {options.smallest_size, options.largest_size});
-  };
-  bound();
-  if (limits_growth(options)) {
-    if (mesh.surface)
-      bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
-    if (const double factor = growth_of(options); factor > 0) {
-      const auto report = limit_gradation(executor, metric_of, mesh, {.factor = factor});
-      if (!report.converged)
-        warnings.push_back("sizes still grow faster than asked for in places, after " +
-                           std::to_string(report.sweeps) + " sweeps over the edges");
-    }
-    bound();  // intersections may be finer than the metrics
+  if (const double factor = growth_of(options); factor > 0) {
+    const auto report = limit_gradation(executor, metric_of, mesh, {.factor = factor});
+    if (!report.converged)
+      warnings.push_back("sizes still grow faster than asked for in places, after " +
+                         std::to_string(report.sweeps) + " sweeps over the edges");
   }
+  if (limits_growth(options))  // intersections may be finer than the metrics
+    bound_sizes(executor, metric_of, {options.smallest_size, options.largest_size});
   if (options.required_gradation > 0 &&
       !take_required_sizes(executor, mesh, options.required_gradation, metric_of).converged)
     warnings.emplace_back("sizes still differ more than asked for from required ones");
   return warnings;
+}
+
+/// Makes the metrics keep the bounds, the curvature of boundaries and the growth that the options
+/// allow. Returns sentences about what it could not do.
+template <int Dim>
+std::vector<std::string> limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                     const AdaptOptions& options,
+                                     std::vector<Metric<Dim>>& metric_of) {
+  bound_sizes(executor, metric_of, {options.smallest_size, options.largest_size});
+  if (limits_growth(options) && mesh.surface)
+    bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
+  return limit_growth(executor, mesh, options, metric_of);
 }
 
 /// Throws unless the elements that the metric asks for can be numbered and fit in memory.

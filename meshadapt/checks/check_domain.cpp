@@ -16,7 +16,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "geometry/roughness.hpp"
+#include "geometry/rounding.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/boundary_surface.hpp"
 #include "mesh/indices.hpp"

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
@@ -42,11 +43,10 @@ BoundaryParts<Dim>::BoundaryParts(const runtime::Executor& run_on, Mesh<Dim>& of
       options(made_with),
       facets(std::move(all)),
       extent(extent_of(executor, mesh)),
-      tolerance(flatness * extent),
-      hausdorff_tolerance(options.hausdorff_tolerance),
-      least_turn(std::cos(options.ridge_angle * std::numbers::pi / 180)),
-      sides(executor, facets) {
-  if (options.geometry && hausdorff_tolerance > 0) reference = options.geometry->surface<Dim>();
+      within{flatness * extent, options.hausdorff_tolerance,
+             std::cos(options.ridge_angle * std::numbers::pi / 180)},
+      sides(executor, facets.size(), [&](std::size_t f) { return facets[f].corners; }) {
+  if (options.geometry && within.surface > 0) reference = options.geometry->surface<Dim>();
   if (reference != nullptr) reference_sheets = reference->sheets_of(executor, mesh, facets);
   if constexpr (Dim == 3)
     for (const ListedEdge& edge : edges) listed.emplace(edge_key(edge.a, edge.b), edge);
@@ -73,25 +73,24 @@ double BoundaryParts<Dim>::rounding_tolerance() {
     if (!add_all(std::array{edge.a, edge.b})) return 0;
   rounding->precision = finder.precision();
   const double found = meshadapt::rounding_tolerance<Dim>(rounding->precision);
-  const bool matters = found > tolerance && found < coarsest * extent;
+  const bool matters = found > within.flat && found < coarsest * extent;
   return rounding->tolerance = matters ? found : 0;
+}
+
+template <int Dim>
+Vector<Dim> BoundaryParts<Dim>::direction(std::uint32_t facet) const {
+  if (is_noise(facet)) return noise_normals[facet];
+  return unit(normal_of<Dim>(mesh, outward_corners(mesh, facets[facet])));
 }
 
 template <int Dim>
 bool BoundaryParts<Dim>::turns_little(std::uint32_t f, std::uint32_t g, SideKey key) const {
   const Facet<Dim>&p = facets[f].corners, &q = facets[g].corners;
   const Vector<Dim> u = away_from<Dim>(mesh, p, key), v = away_from<Dim>(mesh, q, key);
-  if (dot(u, v) < -least_turn * norm(u) * norm(v)) return true;
-  if (wide_normals.empty()) return false;
-  const auto is_noise = [&](std::uint32_t facet) { return norm(wide_normals[facet]) > 0; };
+  if (dot(u, v) < -within.least_turn * norm(u) * norm(v)) return true;
   if (!is_noise(f) && !is_noise(g)) return false;
-  const auto wide_normal = [&](std::uint32_t facet) -> Vector<Dim> {
-    if (is_noise(facet)) return wide_normals[facet];
-    const Vector<Dim> own = normal_of<Dim>(mesh, outward_corners(mesh, facets[facet]));
-    return (1 / norm(own)) * own;
-  };
   const double side = face_alike(mesh, facets[f], facets[g]) ? 1 : -1;
-  return side * dot(wide_normal(f), wide_normal(g)) > least_turn;
+  return side * dot(direction(f), direction(g)) > within.least_turn;
 }
 
 template <int Dim>

@@ -3,6 +3,8 @@
 /// curve, and what every vertex may therefore do.
 #pragma once
 
+#include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "ductile/meshadapt/adapt_options.hpp"
@@ -25,6 +27,21 @@ struct ListedEdge {
   VertexId a = none, b = none;
   std::int32_t reference = 0;
   bool required = false, ridge = false;
+};
+
+/// An edge of a curve, in 3D.
+struct CurveEdge {
+  VertexId a, b;
+  Curve data;
+  std::vector<PatchId> patches;  ///< that meet there, sorted
+  CurveId curve = 0;
+  bool bends = false;          ///< more than rounding makes it
+  std::uint32_t sheet = none;  ///< the curve of the reference that it stands for
+  bool agrees_with(const CurveEdge& o) const {
+    return std::tie(data.reference, data.listed, data.required, data.ridge, patches, sheet) ==
+           std::tie(o.data.reference, o.data.listed, o.data.required, o.data.ridge, o.patches,
+                    o.sheet);
+  }
 };
 
 /// Sets mesh.patches, curves, links_of, patches_of, kind_of.class_dimension and entity_of from the

@@ -1,4 +1,4 @@
-#include "geometry/classify_curves.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "ductile/runtime/worklist.hpp"
-#include "geometry/rough_parts.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -47,7 +46,7 @@ class CurveGrower {
   void grow_curve(std::uint32_t seed) {
     const auto id = static_cast<CurveId>(parts_.mesh.curves.size());
     Curve curve = edges_[seed].data;
-    curve.smooth = is_levelled(edges_[seed]);
+    curve.smooth = is_denoised(edges_[seed]);
     const auto [origin, direction, tolerance] = line_along(seed);
     edges_[seed].curve = id;
     for (const VertexId start : {edges_[seed].a, edges_[seed].b}) {
@@ -57,14 +56,14 @@ class CurveGrower {
       for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
         CurveEdge& edge = edges_[e];
         const VertexId end = edge.a == v ? edge.b : edge.a;
-        const Vector<3> d = place(end) - origin, step = place(end) - place(v);
+        const Vector<3> d = parts_.place(end) - origin, step = parts_.place(end) - parts_.place(v);
         const bool straight =
-            !is_levelled(edge) && norm(d - dot(d, direction) * direction) <= tolerance;
+            !is_denoised(edge) && norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
         if (!edge.agrees_with(edges_[seed])) break;
         const bool may_bend =
-            parts_.reference == nullptr && parts_.hausdorff_tolerance > 0 && !edge.data.required;
-        const bool turns_little = may_bend && along > parts_.least_turn * norm(step);
+            parts_.reference == nullptr && parts_.within.surface > 0 && !edge.data.required;
+        const bool turns_little = may_bend && along > parts_.within.least_turn * norm(step);
         // Also one that ends here, next to another of the same arc.
         curve.smooth = curve.smooth || (turns_little && !straight);
         if (edge.curve != 0) break;
@@ -96,15 +95,15 @@ class CurveGrower {
   /// Through an edge, or near what continues it, if only rounding makes that bend.
   Line line_along(std::uint32_t seed) {
     const CurveEdge& edge = edges_[seed];
-    Vector<3> direction = place(edge.b) - place(edge.a);
+    Vector<3> direction = parts_.place(edge.b) - parts_.place(edge.a);
     direction *= 1 / norm(direction);
-    if (auto line = is_levelled(edge) ? std::nullopt : rough_line(seed)) {
+    if (auto line = is_denoised(edge) ? std::nullopt : rough_line(seed)) {
       if (dot(line->direction, direction) < 0) line->direction *= -1;
       parts_.rounding->line_of.resize(parts_.mesh.curves.size() + 1);
       parts_.rounding->line_of.back() = line;
       return {line->origin, line->direction, parts_.rounding_tolerance()};
     }
-    return {place(edge.a), direction, parts_.tolerance};
+    return {parts_.place(edge.a), direction, parts_.within.flat};
   }
 
   /// The line near a chain of edges that would lie on it without rounding.
@@ -141,7 +140,7 @@ class CurveGrower {
     const auto at = [&](VertexId w) { return parts_.mesh.site_of[w].position; };
     const Vector<3> u = at(v) - at(before), w = at(after) - at(v);
     if (!(dot(u, w) > 0) || !turns_by_rounding(u, w)) return Turn::much;
-    if (norm(w - dot(w, u) / dot(u, u) * u) <= parts_.tolerance) return Turn::none;
+    if (norm(w - dot(w, u) / dot(u, u) * u) <= parts_.within.flat) return Turn::none;
     if (!(parts_.rounding_tolerance() > 0)) return Turn::much;
     return explains_line(at(before), at(v), at(after), parts_.rounding_tolerance()) &&
                    explains_line(at(after), at(v), at(before), parts_.rounding_tolerance())
@@ -157,13 +156,9 @@ class CurveGrower {
     return edges[0] == edge ? edges[1] : edges[0];
   }
 
-  const Vector<3>& place(VertexId v) const {
-    return parts_.places.empty() ? parts_.mesh.site_of[v].position : parts_.places[v];
+  bool is_denoised(const CurveEdge& edge) const {
+    return parts_.is_denoised(edge.a) || parts_.is_denoised(edge.b);
   }
-  bool is_levelled(VertexId v) const {
-    return !parts_.places.empty() && parts_.places[v] != parts_.mesh.site_of[v].position;
-  }
-  bool is_levelled(const auto& edge) const { return is_levelled(edge.a) || is_levelled(edge.b); }
 
   BoundaryParts<3>& parts_;
   std::vector<CurveEdge>& edges_;
@@ -176,11 +171,7 @@ std::vector<CurveEdge> find_curve_edges(const BoundaryParts<3>& parts) {
   auto keys = runtime::parallel_collect<SideKey>(
       parts.executor, parts.sides.size(), [&](std::size_t i, auto&& append) {
         if (!parts.sides.begins_run(i)) return;
-        const auto both = parts.sides.run_at(i);
-        if (both.size() != 2 ||
-            parts.facets[both[0].facet].patch != parts.facets[both[1].facet].patch ||
-            parts.is_sharp(both))
-          append(both[0].key);
+        if (const auto run = parts.sides.run_at(i); parts.ends_patch(run)) append(run[0].key);
       });
   for (const auto& [key, edge] : parts.listed) keys.push_back(key);
   std::sort(keys.begin(), keys.end());

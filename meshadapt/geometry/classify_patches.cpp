@@ -1,4 +1,4 @@
-#include "geometry/classify_patches.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,6 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "geometry/rough_parts.hpp"
-#include "geometry/touching.hpp"
-#include "geometry/wide_normals.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -28,11 +25,9 @@ class PatchFinder {
 
   void find() {
     find_patches();
-    if (!(parts_.hausdorff_tolerance > 0)) return;
+    if (!(parts_.within.surface > 0)) return;
     find_kept(parts_.options.keep_facets_at);
-    parts_.wide_normals =
-        wide_normals<Dim>(parts_.executor, parts_.mesh, parts_.facets, std::span(beside_),
-                          {parts_.hausdorff_tolerance, parts_.least_turn});
+    find_noise<Dim>(parts_, std::span(beside_));
     join_patches();
   }
 
@@ -79,35 +74,9 @@ class PatchFinder {
                   static_cast<std::uint32_t>(f)};
     });
     runtime::parallel_sort(parts_.executor, std::span(order));
-    find_rough_patches();
+    find_flat_parts<Dim>(parts_, std::span(across_));
     for (const auto& [size, seed] : order)
       if (parts_.facets[seed].patch == 0) grow_patch(seed);
-  }
-
-  // ---- What is flat up to how precisely it was written ----
-
-  void find_rough_patches() {
-    const RoughParts<Dim, decltype(across_)> parts(parts_.mesh, parts_.facets, across_);
-    const bool rough = runtime::parallel_reduce(
-        parts_.executor, parts_.facets.size(), false,
-        [&](std::size_t f) {
-          return parts.is_rough(static_cast<std::uint32_t>(f), parts_.tolerance);
-        },
-        std::logical_or<>());
-    if (!rough || !(parts_.rounding_tolerance() > 0)) return;
-    const auto found = parts.all(parts_.rounding_tolerance(), parts_.tolerance);
-    // If none is rough, the coordinates are round numbers by choice.
-    if (std::none_of(found.begin(), found.end(), [](const auto& part) { return part.rough; }))
-      return;
-    for (const auto& [part, plane, _] : found) {
-      const auto id = static_cast<PatchId>(parts_.mesh.patches.size());
-      Patch<Dim> patch = parts_.facets[part.front()].data;
-      patch.normal = plane.direction;
-      for (const std::uint32_t f : part) parts_.facets[f].patch = id;
-      parts_.mesh.patches.push_back(patch);
-      parts_.rounding->plane_of.resize(parts_.mesh.patches.size());
-      parts_.rounding->plane_of.back() = plane;
-    }
   }
 
   void grow_patch(std::uint32_t seed) {
@@ -145,7 +114,7 @@ class PatchFinder {
   bool in_plane(const Facet<Dim>& facet, const Vector<Dim>& origin,
                 const Vector<Dim>& normal) const {
     for (const VertexId v : facet)
-      if (std::abs(dot(parts_.mesh.site_of[v].position - origin, normal)) > parts_.tolerance)
+      if (std::abs(dot(parts_.mesh.site_of[v].position - origin, normal)) > parts_.within.flat)
         return false;
     const Vector<Dim> own = normal_of<Dim>(parts_.mesh, facet);
     return std::abs(dot(own, normal)) > 0.9 * norm(own);
@@ -156,11 +125,7 @@ class PatchFinder {
   /// If the boundary lies against itself, both sides keep their facets, so that they do not cross.
   void find_kept(const std::vector<VertexId>& more) {
     constexpr double touch = 1e-8;  // of the extent
-    std::vector<Facet<Dim>> boundary;
-    for (const TaggedFacet<Dim>& facet : parts_.facets)
-      if (facet.other == none) boundary.push_back(facet.corners);
-    parts_.kept =
-        touching_vertices<Dim>(parts_.executor, parts_.mesh, boundary, touch * parts_.extent);
+    find_touching(parts_, touch * parts_.extent);
     for (const VertexId v : more) parts_.kept[v] = 1;
   }
 

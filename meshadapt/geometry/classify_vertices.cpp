@@ -1,4 +1,4 @@
-#include "geometry/classify_vertices.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,7 +8,6 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "geometry/crack_sides.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -86,7 +85,7 @@ class VertexClassifier {
   /// Are all facets around a vertex connected there, by facets or along its curve? What bends may
   /// touch itself at a vertex; what is flat has another patch there.
   bool is_met_once(VertexId v, std::size_t facet_count) const {
-    if (parts_.hausdorff_tolerance == 0 || facet_count == 0) return true;
+    if (parts_.within.surface == 0 || facet_count == 0) return true;
     if constexpr (Dim == 3) {
       const auto links = parts_.mesh.links_of.of(v);
       if (!links.empty()) {

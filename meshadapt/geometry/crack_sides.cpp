@@ -1,4 +1,4 @@
-#include "geometry/crack_sides.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <compare>
@@ -56,20 +56,17 @@ bool encloses(const Mesh<Dim>& mesh, std::span<const Meeting> rim, double tolera
 }
 
 template <int Dim>
-runtime::UnsetVector<Meeting> meetings_at_sides(const runtime::Executor& executor,
-                                                const Mesh<Dim>& mesh,
-                                                const std::vector<TaggedFacet<Dim>>& facets,
-                                                const FacetSides<Dim>& sides) {
+runtime::UnsetVector<Meeting> meetings_at_sides(const BoundaryParts<Dim>& parts) {
   return runtime::parallel_collect<Meeting>(
-      executor, sides.size(), [&](std::size_t i, auto&& append) {
-        if (!sides.begins_run(i)) return;
-        const auto run = sides.run_at(i);
-        for (const FacetSide& f : run)
-          for (const FacetSide& g : run) {
-            const PatchId p = facets[f.facet].patch, q = facets[g.facet].patch;
-            if (p < q && (Dim == 2 || folds_back<Dim>(mesh, facets[f.facet].corners,
-                                                      facets[g.facet].corners, f.key)))
-              append({p, q, f.key});
+      parts.executor, parts.sides.size(), [&](std::size_t i, auto&& append) {
+        if (!parts.sides.begins_run(i)) return;
+        const auto run = parts.sides.run_at(i);
+        for (const FacetSide& side : run)
+          for (const FacetSide& other : run) {
+            const auto &f = parts.facets[side.facet], &g = parts.facets[other.facet];
+            if (f.patch < g.patch &&
+                (Dim == 2 || folds_back<Dim>(parts.mesh, f.corners, g.corners, side.key)))
+              append({f.patch, g.patch, side.key});
           }
       });
 }
@@ -79,31 +76,28 @@ runtime::UnsetVector<Meeting> meetings_at_sides(const runtime::Executor& executo
 /// One corner of a boundary facet.
 using Corner = std::uint64_t;  // vertex, and the number of the facet
 
-runtime::UnsetVector<Corner> corners_of_boundary(const runtime::Executor& executor,
-                                                 const std::vector<TaggedFacet<3>>& facets) {
-  auto corners =
-      runtime::parallel_collect<Corner>(executor, facets.size(), [&](std::size_t f, auto&& append) {
-        if (facets[f].other != none) return;
-        for (const VertexId v : facets[f].corners) append(Corner{v} << 32U | f);
+runtime::UnsetVector<Corner> corners_of_boundary(const BoundaryParts<3>& parts) {
+  auto corners = runtime::parallel_collect<Corner>(
+      parts.executor, parts.facets.size(), [&](std::size_t f, auto&& append) {
+        if (parts.facets[f].other != none) return;
+        for (const VertexId v : parts.facets[f].corners) append(Corner{v} << 32U | f);
       });
-  runtime::parallel_sort(executor, std::span(corners));
+  runtime::parallel_sort(parts.executor, std::span(corners));
   return corners;
 }
 
-runtime::UnsetVector<Meeting> meetings_against(const runtime::Executor& executor,
-                                               const Mesh<3>& mesh,
-                                               const std::vector<TaggedFacet<3>>& facets) {
+runtime::UnsetVector<Meeting> meetings_against(const BoundaryParts<3>& parts) {
   constexpr double opposite = -(1 - 1e-8);
-  const auto corners = corners_of_boundary(executor, facets);
+  const auto& facets = parts.facets;
+  const auto corners = corners_of_boundary(parts);
   const auto vertex = [&](std::size_t i) { return corners[i] >> 32U; };
   const auto facet = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
-  auto outwards = runtime::make_unset_vector<Vector<3>>(executor, facets.size());  // of length 1
-  runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
-    const Corners<3>& corners_there = mesh.corners_of[facets[f].element];
-    outwards[f] = unit(normal_of<3>(mesh, facet_of<3>(corners_there, facets[f].facet)));
+  auto outwards = runtime::make_unset_vector<Vector<3>>(parts.executor, facets.size());
+  runtime::parallel_for(parts.executor, facets.size(), [&](std::size_t f) {
+    outwards[f] = unit(normal_of<3>(parts.mesh, outward_corners(parts.mesh, facets[f])));
   });
   return runtime::parallel_collect<Meeting>(
-      executor, corners.size(), [&](std::size_t i, auto&& append) {
+      parts.executor, corners.size(), [&](std::size_t i, auto&& append) {
         for (std::size_t j = i + 1; j < corners.size() && vertex(j) == vertex(i); ++j) {
           const std::uint32_t f = facet(i), g = facet(j);
           const auto [p, q] = std::minmax(facets[f].patch, facets[g].patch);
@@ -115,20 +109,17 @@ runtime::UnsetVector<Meeting> meetings_against(const runtime::Executor& executor
 }  // namespace
 
 template <int Dim>
-void mark_crack_sides(const runtime::Executor& executor, Mesh<Dim>& mesh,
-                      const std::vector<TaggedFacet<Dim>>& facets, const FacetSides<Dim>& sides,
-                      double straight) {
-  mark_pairs(mesh, meetings_at_sides(executor, mesh, facets, sides),
-             [&](std::span<const Meeting> rim) { return encloses(mesh, rim, straight); });
+void mark_crack_sides(BoundaryParts<Dim>& parts) {
+  const double straight = parts.is_rough() ? parts.rounding->tolerance : parts.within.flat;
+  mark_pairs(parts.mesh, meetings_at_sides(parts),
+             [&](std::span<const Meeting> rim) { return encloses(parts.mesh, rim, straight); });
   if constexpr (Dim == 3)
-    mark_pairs(mesh, meetings_against(executor, mesh, facets), [](std::span<const Meeting> shared) {
+    mark_pairs(parts.mesh, meetings_against(parts), [](std::span<const Meeting> shared) {
       return shared.front().key != shared.back().key;
     });
 }
 
-template void mark_crack_sides(const runtime::Executor&, Mesh<2>&,
-                               const std::vector<TaggedFacet<2>>&, const FacetSides<2>&, double);
-template void mark_crack_sides(const runtime::Executor&, Mesh<3>&,
-                               const std::vector<TaggedFacet<3>>&, const FacetSides<3>&, double);
+template void mark_crack_sides(BoundaryParts<2>&);
+template void mark_crack_sides(BoundaryParts<3>&);
 
 }  // namespace ductile::meshadapt

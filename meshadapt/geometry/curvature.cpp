@@ -4,15 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "geometry/bends.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "geometry/curvature_fit.hpp"
-#include "geometry/curve_bend.hpp"
+#include "geometry/surface.hpp"
 
 namespace ductile::meshadapt {
 
@@ -24,94 +25,108 @@ double smallest_value(const Metric<Dim>& tensor) {
   return *std::min_element(values.begin(), values.end());
 }
 
-/// How a smooth patch bends around a node, up to a distance to which chords stay close to it.
-template <int Dim>
-class Surroundings {
+/// The sizes of chords around points of a model's patches, or curves.
+template <int Dim, std::size_t Corners>
+class ChordSizes {
  public:
-  Surroundings(const Mesh<Dim>& mesh, const Bends<Dim>& bends, double tolerance)
-      : mesh_(mesh), bends_(bends), tolerance_(tolerance), seen_(bends.nodes.size(), none) {}
+  using Model = Sheets<Dim, Corners>;
 
-  /// A tensor in which edges as long as the boundary allows have length 1, if it can say so within
-  /// `reach`; one that is too small where they may be longer. Where it bends enough for chords,
-  /// that may be noise: a fit that bends less counts if it explains all that is within 1.5 times as
-  /// far.
-  Metric<Dim> sizes_at(std::uint32_t node, double reach) {
-    constexpr double farther_away = 1.5;
-    front_.clear();
-    found_.clear();
-    origin_ = position(node);
-    bend_ = CurvatureFit<Dim>(normal_at(node));
-    see(node, node);
-    PrincipalAxes<Dim> curvature = bend_.curvature();
+  ChordSizes(const Model& model, const Samples<Dim, Corners>& samples,
+             const std::vector<double>& width_at, double tolerance)
+      : model_(model),
+        samples_(samples),
+        width_at_(width_at),
+        tolerance_(tolerance),
+        seen_(samples.all.size()) {}
+
+  /// A tensor in which edges as long as the model allows have length 1, if it can say so within
+  /// `reach`; one that is too small where they may be longer; 0 if the point is not near the sheet.
+  /// Where the sheet bends enough for chords, that may be noise: a fit that bends less counts if it
+  /// explains all that is within 1.5 times as far.
+  Metric<Dim> at(const Vector<Dim>& point, std::uint32_t sheet, double reach) {
+    constexpr double farther_away = 1.5, near = 4;
+    const auto nearest = model_.nearest_on(point, sheet, near * model_.tolerance());
+    if (!nearest) return {};
+    start(nearest->point, samples_.facets[nearest->facet]);
+    PrincipalAxes<Dim> curvature = fit_.curvature();
     double limit = reach;
     bool bends_enough = false;
-    while (!front_.empty() && found_.size() < most_nodes) {
+    while (!front_.empty() && found_.size() < most_samples) {
       std::pop_heap(front_.begin(), front_.end(), farther);
-      const auto [distance, nearest] = front_.back();
+      const auto [distance, sample] = front_.back();
       front_.pop_back();
       if (distance > limit) break;
-      take(node, nearest, distance);
+      take(sample, distance);
       if (bends_enough) continue;
-      curvature = bend_.curvature();
-      bends_enough = found_.size() > fewest_nodes && is_enough(largest(curvature), distance);
+      curvature = fit_.curvature();
+      bends_enough = found_.size() > fewest_samples && is_enough(largest(curvature), distance);
       if (bends_enough) limit = farther_away * distance;
     }
-    const PrincipalAxes<Dim> smoother = bend_.curvature();
+    const PrincipalAxes<Dim> smoother = fit_.curvature();
     const bool is_rough = largest(smoother) < largest(curvature) && explains_all();
     return sizes(is_rough ? smoother : curvature);
   }
 
  private:
-  /// More vertices than this do not improve a fit.
-  static constexpr std::size_t most_nodes = 100;
-  /// So many beside the node give directions.
-  static constexpr std::size_t fewest_nodes = Dim == 2 ? 2 : 6;
-  /// The distance, in longest allowed chords, up to which vertices are used: where edges are that
+  /// More samples than this do not improve a fit.
+  static constexpr std::size_t most_samples = 100;
+  /// So many beside the closest give directions.
+  static constexpr std::size_t fewest_samples = Corners == 2 ? 2 : 6;
+  /// The distance, in longest allowed chords, up to which samples are used: where edges are that
   /// long, it reaches the next vertices, among which bends to and fro cancel.
   static constexpr double chords = 1.25;
-  using Place = std::pair<double, std::uint32_t>;  // distance, node
+  using Place = std::pair<double, std::uint32_t>;  // distance, sample
 
   static bool farther(const Place& a, const Place& b) { return a > b; }
-  const Vector<Dim>& position(std::uint32_t node) const {
-    return mesh_.site_of[bends_.nodes[node].vertex].position;
+  const Vector<Dim>& position(std::uint32_t sample) const { return samples_.all[sample].position; }
+
+  /// Calls visit(sample) for those next to a sample, some more than once, and for itself.
+  void each_next(std::uint32_t sample, auto&& visit) const {
+    for (const std::uint32_t facet : samples_.facets_at(sample))
+      for (const std::uint32_t next : samples_.facets[facet]) visit(next);
   }
 
-  /// That of a node. Among needles it may say nothing: where the largest part beside the node is
-  /// turned by 45 degrees against it, that part's.
-  const Vector<Dim>& normal_at(std::uint32_t node) const {
+  void start(const Vector<Dim>& point, const typename Samples<Dim, Corners>::Facet& facet) {
+    front_.clear();
+    found_.clear();
+    origin_ = point;
+    ++round_;
+    for (const std::uint32_t sample : facet) see(sample);
+    fit_ = CurvatureFit<Dim, Corners>(direction_at(front_.front().second));
+  }
+
+  /// That of a sample. Among needles it may say nothing: where the largest part beside the sample
+  /// is turned by 45 degrees against it, that part's.
+  const Vector<Dim>& direction_at(std::uint32_t sample) const {
     constexpr double least_turn = 0.7;
-    const auto& [offset, neighbour] = bends_.next;
-    std::uint32_t widest = node;
-    for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
-      if (bends_.nodes[neighbour[i]].area > bends_.nodes[widest].area) widest = neighbour[i];
-    const auto &own = bends_.nodes[node].normal, &wide = bends_.nodes[widest].normal;
+    std::uint32_t widest = sample;
+    each_next(sample, [&](std::uint32_t next) {
+      if (samples_.all[next].area > samples_.all[widest].area) widest = next;
+    });
+    const auto &own = samples_.all[sample].direction, &wide = samples_.all[widest].direction;
     return std::abs(dot(own, wide)) < least_turn ? wide : own;
   }
 
-  void see(std::uint32_t from, std::uint32_t node) {
-    if (std::exchange(seen_[node], from) == from) return;
-    front_.emplace_back(norm(position(node) - origin_), node);
+  void see(std::uint32_t sample) {
+    if (std::exchange(seen_[sample], round_) == round_) return;
+    front_.emplace_back(norm(position(sample) - origin_), sample);
     std::push_heap(front_.begin(), front_.end(), farther);
   }
 
-  void take(std::uint32_t from, std::uint32_t node, double distance) {
-    found_.emplace_back(distance, node);
-    const BendNode<Dim>& found = bends_.nodes[node];
-    bend_.add(position(node) - origin_, found.normal, found.area);
-    const auto& [offset, neighbour] = bends_.next;
-    for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i) see(from, neighbour[i]);
+  void take(std::uint32_t sample, double distance) {
+    found_.emplace_back(distance, sample);
+    const auto& found = samples_.all[sample];
+    fit_.add(found.position - origin_, found.direction, found.area);
+    each_next(sample, [&](std::uint32_t next) { see(next); });
   }
 
-  /// Are all places as high as the fit says, within half of the tolerance?
+  /// Are all places where the fit says, within half of the tolerance?
   bool explains_all() const {
-    double low = std::numeric_limits<double>::max(), high = -low;
-    const auto height = bend_.height();
-    for (const auto& [distance, node] : found_) {
-      const double h = height(position(node) - origin_);
-      low = std::min(low, h);
-      high = std::max(high, h);
-    }
-    return high - low <= tolerance_;
+    Box<Dim> box = Box<Dim>::empty();
+    const auto rise = fit_.rise();
+    for (const auto& [distance, sample] : found_)
+      box = join(box, box_around(std::array{rise(position(sample) - origin_)}));
+    return norm(box.high - box.low) <= tolerance_;
   }
 
   /// Is the distance that of the chords that a curvature allows, see bound_curved_sizes()?
@@ -123,8 +138,8 @@ class Surroundings {
     return *std::max_element(axes.value.begin(), axes.value.end());
   }
 
-  /// Chords in the directions in which it bends most and least; across the surface, the first axis,
-  /// as in the direction in which it bends most.
+  /// Chords in the directions in which it bends; across the surface, and in the plane of a curve,
+  /// the first axis, as in the direction in which it bends most.
   Metric<Dim> sizes(PrincipalAxes<Dim> axes) const {
     const double most = largest(axes);
     if (!(most > 0)) return {};
@@ -142,12 +157,12 @@ class Surroundings {
   /// In a direction, that of the flat parts around: to divide these brings nothing closer.
   double least_size(const Vector<Dim>& direction, double near) const {
     double least = 2 * tolerance_;
-    for (const auto& [distance, node] : found_) {
+    for (const auto& [distance, sample] : found_) {
       if (distance > near && found_.size() >= 8) continue;
-      least = std::max(least, bends_.nodes[node].width);
-      const auto& [offset, neighbour] = bends_.next;
-      for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
-        least = std::max(least, extent(position(neighbour[i]) - position(node), direction));
+      least = std::max(least, width_at_[sample]);
+      each_next(sample, [&](std::uint32_t next) {
+        least = std::max(least, extent(position(next) - position(sample), direction));
+      });
     }
     return least;
   }
@@ -158,12 +173,14 @@ class Surroundings {
     return along > length / 2 ? length : along;
   }
 
-  const Mesh<Dim>& mesh_;
-  const Bends<Dim>& bends_;
+  const Model& model_;
+  const Samples<Dim, Corners>& samples_;
+  const std::vector<double>& width_at_;
   double tolerance_;
-  std::vector<std::uint32_t> seen_;  // [node], from which it was seen last
+  std::vector<std::uint32_t> seen_;  // [sample], in which round last
+  std::uint32_t round_ = 0;
   std::vector<Place> front_, found_;
-  CurvatureFit<Dim> bend_;
+  CurvatureFit<Dim, Corners> fit_;
   Vector<Dim> origin_;
 };
 
@@ -181,53 +198,83 @@ Metric<Dim> bounded(const Metric<Dim>& metric, const Metric<Dim>& tensor) {
   return binds ? intersect(metric, compose(axes)) : metric;
 }
 
+/// A vertex of a mesh on a patch, or a curve, of the model.
+struct OnSheet {
+  VertexId vertex;
+  std::uint32_t sheet;
+  auto operator<=>(const OnSheet&) const = default;
+};
+
 template <int Dim>
-void bound_on_patches(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
-                      std::vector<Metric<Dim>>& metric_of) {
-  constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
-  const Bends<Dim> bends(executor, mesh, flat * tolerance);
-  const auto& nodes = bends.nodes;
-  std::vector<Metric<Dim>> sizes_of(nodes.size());
-  const std::size_t block_size = std::max<std::size_t>(1024, nodes.size() / 64);
-  runtime::parallel_for_blocks(
-      executor, nodes.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
-        Surroundings<Dim> surroundings(mesh, bends, tolerance);
-        for (std::size_t n = begin; n < end; ++n) {
-          const double largest = 1 / std::sqrt(smallest_value(metric_of[nodes[n].vertex]));
-          sizes_of[n] = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
+runtime::UnsetVector<OnSheet> on_patches(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+  return runtime::parallel_collect<OnSheet>(
+      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
+        if (!mesh.alive(static_cast<ElementId>(e))) return;
+        for (std::size_t i = 0; i <= Dim; ++i) {
+          const Patch<Dim>& patch = mesh.patches[mesh.patches_of[e][i]];
+          if (!patch.smooth) continue;
+          for (const VertexId v : facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i)))
+            append({v, patch.sheet});
         }
       });
-  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
-    while (end < nodes.size() && nodes[end].patch == nodes[begin].patch) ++end;
-    runtime::parallel_for(executor, end - begin, [&](std::size_t i) {
-      Metric<Dim>& metric = metric_of[nodes[begin + i].vertex];  // once in each patch
-      metric = bounded(metric, sizes_of[begin + i]);
-    });
-  }
 }
 
-void bound_on_curves(const runtime::Executor&, const Mesh<2>&, double, std::vector<Metric<2>>&) {}
-void bound_on_curves(const runtime::Executor& executor, const Mesh<3>& mesh, double tolerance,
-                     std::vector<Metric<3>>& metric_of) {
-  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    const auto vertex = static_cast<VertexId>(v);
-    if (mesh.kind_of[v].class_dimension > 1 || !mesh.vertex_alive(vertex)) return;
-    for (const CurveLink& link : mesh.links_of.of(vertex)) {
-      if (!mesh.curves[link.curve].smooth) continue;
-      const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));
-      metric_of[v] =
-          bounded(metric_of[v], CurveBend(mesh, vertex, link.curve).sizes(tolerance, largest));
-    }
-  });
+template <int Dim>
+runtime::UnsetVector<OnSheet> on_curves(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+  return runtime::parallel_collect<OnSheet>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto vertex = static_cast<VertexId>(v);
+        if (Dim == 2 || mesh.kind_of[v].class_dimension > 1 || !mesh.vertex_alive(vertex)) return;
+        for (const CurveLink& link : mesh.links_of.of(vertex))
+          if (mesh.curves[link.curve].smooth) append({vertex, mesh.curves[link.curve].sheet});
+      });
 }
+
+template <int Dim>
+struct SizeBounder {
+  const runtime::Executor& executor;
+  const Mesh<Dim>& mesh;
+  double tolerance;
+  std::vector<Metric<Dim>>& metric_of;
+
+  /// Bounds the metrics at places on these sheets of the model.
+  template <std::size_t Corners>
+  void bound(const Sheets<Dim, Corners>& model, const Samples<Dim, Corners>& samples,
+             runtime::UnsetVector<OnSheet> places) const {
+    constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
+    if (places.empty()) return;
+    runtime::parallel_sort(executor, std::span(places));
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    const std::vector<double> width_at = samples.widths(executor, flat * tolerance);
+    std::vector<Metric<Dim>> sizes_of(places.size());
+    const std::size_t block_size = std::max<std::size_t>(1024, places.size() / 64);
+    runtime::parallel_for_blocks(
+        executor, places.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
+          ChordSizes<Dim, Corners> sizes(model, samples, width_at, tolerance);
+          for (std::size_t i = begin; i < end; ++i) {
+            const auto [v, sheet] = places[i];
+            const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));
+            sizes_of[i] = sizes.at(mesh.site_of[v].position, sheet, largest);
+          }
+        });
+    runtime::parallel_for(executor, places.size(), [&](std::size_t begin) {
+      const VertexId v = places[begin].vertex;
+      if (begin > 0 && places[begin - 1].vertex == v) return;
+      for (std::size_t i = begin; i < places.size() && places[i].vertex == v; ++i)
+        metric_of[v] = bounded(metric_of[v], sizes_of[i]);
+    });
+  }
+};
 
 }  // namespace
 
 template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of) {
-  bound_on_patches(executor, mesh, tolerance, metric_of);
-  bound_on_curves(executor, mesh, tolerance, metric_of);
+  const Surface<Dim>& model = *mesh.surface;
+  const SizeBounder<Dim> bounder{executor, mesh, tolerance, metric_of};
+  bounder.bound(model.facets, model.facet_samples, on_patches(executor, mesh));
+  bounder.bound(model.edges, model.edge_samples, on_curves(executor, mesh));
 }
 
 template void bound_curved_sizes(const runtime::Executor&, const Mesh<2>&, double,

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/unit.hpp"
 #include "geometry/smooth_model.hpp"
 
 namespace ductile::meshadapt {
@@ -61,7 +62,6 @@ class CurveTangents {
       straight_[e] = !edges[e].smooth || is_collinear(e, 0) || is_collinear(e, 1);
   }
 
-  bool is_straight(std::size_t edge) const { return straight_[edge] != 0; }
   /// Does another edge continue this one at an end?
   bool is_continued(std::size_t edge, std::size_t end) const { return next_[edge][end] != no_edge; }
 
@@ -74,6 +74,30 @@ class CurveTangents {
     // As much to one side of the chord as it is to the other side at the other end.
     const Vector<Dim> other = through(edge, 1 - end, -1.0 * chord);
     return other - (2 * dot(chord, other) / dot(chord, chord)) * chord;
+  }
+
+  /// Edges that continue each other share a sample. Where the circle is turned by more than 18
+  /// degrees against both edges it is that of a needle, and their mean counts.
+  Samples<Dim, 2> samples() const {
+    constexpr double near = 0.95;
+    Samples<Dim, 2> result;
+    result.facets.resize(edges_.size());
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      for (std::size_t end = 0; end < 2; ++end) {
+        const std::uint32_t next = next_[e][end];
+        const bool is_known = next != no_edge && next < e;
+        const std::size_t beside = next == no_edge ? 0 : end_at(next, edges_[e].corner[end]);
+        std::uint32_t& sample = result.facets[e][end];
+        sample =
+            is_known ? result.facets[next][beside] : static_cast<std::uint32_t>(result.all.size());
+        if (!is_known) {
+          const Vector<Dim> chord = along(e, end), tangent = unit(this->tangent(e, end));
+          const Vector<Dim> mean = unit(next == no_edge ? chord : chord - along(next, beside));
+          result.all.push_back({at(e, end), dot(tangent, mean) > near ? tangent : mean});
+        }
+        result.all[sample].area += norm(along(e, end)) / 2;
+      }
+    return result;
   }
 
   /// Nothing if it is straight.

@@ -25,6 +25,11 @@ inline SideKey edge_key(VertexId a, VertexId b) {
   return SideKey{std::min(a, b)} << 32U | std::max(a, b);
 }
 
+/// The ends of an edge in 3D, the lower first.
+inline std::array<VertexId, 2> ends_of(SideKey key) {
+  return {static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key)};
+}
+
 template <int Dim, class Visit>
 void each_side(const Facet<Dim>& facet, Visit visit) {
   if constexpr (Dim == 2) {
@@ -43,15 +48,16 @@ struct FacetSide {
   auto operator<=>(const FacetSide&) const = default;
 };
 
-/// The sides of all facets, sorted.
+/// The sides of facets, sorted.
 template <int Dim>
 class FacetSides {
  public:
-  FacetSides(const runtime::Executor& executor, const std::vector<TaggedFacet<Dim>>& facets)
-      : sides_(runtime::make_unset_vector<FacetSide>(executor, Dim * facets.size())) {
-    runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
+  /// corners_of(facet) gives the corners.
+  FacetSides(const runtime::Executor& executor, std::size_t facet_count, auto&& corners_of)
+      : sides_(runtime::make_unset_vector<FacetSide>(executor, Dim * facet_count)) {
+    runtime::parallel_for(executor, facet_count, [&](std::size_t f) {
       std::uint8_t number = 0;
-      each_side<Dim>(facets[f].corners, [&](SideKey key) {
+      each_side<Dim>(corners_of(f), [&](SideKey key) {
         sides_[Dim * f + number] = {key, static_cast<std::uint32_t>(f), number};
         ++number;
       });
@@ -70,6 +76,14 @@ class FacetSides {
     return std::span(sides_).subspan(begin, end - begin);
   }
   bool begins_run(std::size_t i) const { return i == 0 || sides_[i - 1].key != sides_[i].key; }
+  /// Calls visit(facets at the side) for each side.
+  void each_run(auto&& visit) const {
+    for (std::size_t i = 0; i < sides_.size();) {
+      const auto run = run_at(i);
+      visit(run);
+      i += run.size();
+    }
+  }
 
   std::span<const FacetSide> at(SideKey key) const {
     const auto at = std::lower_bound(sides_.begin(), sides_.end(), FacetSide{key, 0, 0});
@@ -97,7 +111,7 @@ Vector<Dim> away_from(const Mesh<Dim>& mesh, const Facet<Dim>& facet, SideKey ke
     const auto shared = static_cast<VertexId>(key);
     return at(facet[0] == shared ? facet[1] : facet[0]) - at(shared);
   } else {
-    const auto a = static_cast<VertexId>(key >> 32U), b = static_cast<VertexId>(key);
+    const auto [a, b] = ends_of(key);
     VertexId third = facet[0];
     for (const VertexId v : facet)
       if (v != a && v != b) third = v;

@@ -14,10 +14,19 @@ namespace ductile::meshadapt {
 
 using runtime::parallel_for;
 
+namespace {
+
+/// The corner of its facet across from a side.
+std::size_t opposite(const FacetSide& side) { return (side.number + 2U) % 3; }
+
+}  // namespace
+
 PatchNormals::PatchNormals(const runtime::Executor& executor, const ModelInput<3>& input,
                            const CurveTangents<3>& curves)
-    : executor_(executor), input_(input), curves_(curves) {
-  find_sides();
+    : executor_(executor),
+      input_(input),
+      curves_(curves),
+      sides_(executor, input.facets.size(), [&](std::size_t f) { return input.facets[f].corner; }) {
   find_edges();
   find_nodes();
   find_flat();
@@ -28,42 +37,12 @@ PatchNormals::PatchNormals(const runtime::Executor& executor, const ModelInput<3
                [&](std::size_t n) { normal_of_[n] = normal_at(static_cast<Node>(n)); });
 }
 
-void PatchNormals::find_sides() {
-  sides_ = runtime::make_unset_vector<ModelSide>(executor_, 3 * input_.facets.size());
-  parallel_for(executor_, input_.facets.size(), [&](std::size_t f) {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const auto& corner = input_.facets[f].corner;
-      const std::uint32_t a = corner[(i + 1) % 3], b = corner[(i + 2) % 3];
-      sides_[3 * f + i] = {std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(f), i};
-    }
-  });
-  runtime::parallel_sort(executor_, std::span(sides_));
-}
-
-std::size_t PatchNormals::end_of_run(std::size_t begin) const {
-  std::size_t end = begin + 1;
-  while (end < sides_.size() && sides_[end].low == sides_[begin].low &&
-         sides_[end].high == sides_[begin].high)
-    ++end;
-  return end;
-}
-
 void PatchNormals::find_edges() {
-  using Key = std::array<std::uint32_t, 3>;
-  std::vector<Key> edges;
-  edges.reserve(input_.edges.size());
-  for (std::uint32_t e = 0; e < input_.edges.size(); ++e) {
-    const auto [a, b] = input_.edges[e].corner;
-    edges.push_back({std::min(a, b), std::max(a, b), e});
-  }
-  std::sort(edges.begin(), edges.end());
   edge_at_.assign(input_.facets.size(), {no_edge, no_edge, no_edge});
-  std::size_t e = 0;
-  for (const ModelSide& side : sides_) {
-    const std::array at{side.low, side.high};
-    while (e < edges.size() && std::array{edges[e][0], edges[e][1]} < at) ++e;
-    if (e < edges.size() && std::array{edges[e][0], edges[e][1]} == at)
-      edge_at_[side.facet][side.opposite] = edges[e][2];
+  for (auto e = static_cast<std::uint32_t>(input_.edges.size()); e-- > 0;) {
+    const auto [a, b] = input_.edges[e].corner;
+    for (const FacetSide& side : sides_.at(edge_key(a, b)))
+      edge_at_[side.facet][opposite(side)] = e;
   }
 }
 
@@ -121,11 +100,12 @@ void PatchNormals::find_flat() {
       plane = plane == no_edge || plane == facet.plane ? facet.plane : several;
     }
   }
-  for (std::size_t i = 0; i < sides_.size(); i = end_of_run(i)) {
-    if (end_of_run(i) == i + 2) keep_flat(i, i + 2, planes);
-    if (end_of_run(i) != i + 2 || edge_at_[sides_[i].facet][sides_[i].opposite] != no_edge)
-      plane_at[sides_[i].low] = plane_at[sides_[i].high] = several;
-  }
+  sides_.each_run([&](std::span<const FacetSide> run) {
+    const auto [a, b] = ends_of(run[0].key);
+    if (run.size() == 2) keep_flat(run, planes);
+    if (run.size() != 2 || edge_at_[run[0].facet][opposite(run[0])] != no_edge)
+      plane_at[a] = plane_at[b] = several;
+  });
   for (const std::uint32_t plane : plane_at)
     if (plane < several) planes[plane] = 1;
   flat_.resize(input_.facets.size());
@@ -135,44 +115,43 @@ void PatchNormals::find_flat() {
 }
 
 /// Marks planes that are too wide for what they turn by at this side.
-void PatchNormals::keep_flat(std::size_t begin, std::size_t end,
+void PatchNormals::keep_flat(std::span<const FacetSide> both,
                              std::vector<std::uint8_t>& planes) const {
   constexpr double most = 2;  // of the tolerance: an arc of a mesh in a loop may have used it up
-  const std::uint32_t f = sides_[begin].facet, g = sides_[begin + 1].facet;
+  const std::uint32_t f = both[0].facet, g = both[1].facet;
   const auto &one = input_.facets[f], &other = input_.facets[g];
   if (one.patch != other.patch || one.plane == other.plane ||
-      edge_at_[f][sides_[begin].opposite] != no_edge)
+      edge_at_[f][opposite(both[0])] != no_edge)
     return;
   const Vector<3> u = facet_normal_of(f), v = facet_normal_of(g);
   const double turn = std::asin(std::min(1.0, norm(cross(unit(u), unit(v)))));
-  const double length = norm(input_.points[sides_[begin].low] - input_.points[sides_[begin].high]);
-  for (std::size_t i = begin; i < end; ++i) {
-    const double height = norm(i == begin ? u : v) / length;
-    if (height * turn / 8 > most * input_.tolerance)
-      planes[input_.facets[sides_[i].facet].plane] = 1;
-  }
+  const auto [a, b] = ends_of(both[0].key);
+  const double length = norm(input_.points[a] - input_.points[b]);
+  for (const auto& [facet, normal] : {std::pair(f, u), std::pair(g, v)})
+    if (norm(normal) / length * turn / 8 > most * input_.tolerance)
+      planes[input_.facets[facet].plane] = 1;
 }
 
 void PatchNormals::find_straight() {
   straight_.resize(input_.facets.size());
-  for (std::size_t i = 0; i < sides_.size();) {
-    const std::size_t end = end_of_run(i);
-    const auto f = [&](std::size_t k) { return sides_[k].facet; };
-    bool straight = end != i + 2;
-    for (std::size_t k = i; k < end; ++k)
-      straight = straight || is_flat(f(k)) || input_.facets[f(k)].held;
-    for (; i < end; ++i) straight_[sides_[i].facet][sides_[i].opposite] = straight;
-  }
+  sides_.each_run([&](std::span<const FacetSide> run) {
+    bool straight = run.size() != 2;
+    for (const FacetSide& side : run)
+      straight = straight || is_flat(side.facet) || input_.facets[side.facet].held;
+    for (const FacetSide& side : run) straight_[side.facet][opposite(side)] = straight;
+  });
 }
 
 /// Is an edge inside of a patch sharp? It is where the patch turns by the ridge angle or a ridge is
 /// listed. Other edges, such as the seams of closed surfaces, lie on what is smooth.
-bool PatchNormals::is_crease(const ModelSide& one, const ModelSide& other) const {
+bool PatchNormals::is_crease(std::span<const FacetSide> both) const {
+  const FacetSide &one = both[0], &other = both[1];
   if (input_.facets[one.facet].patch != input_.facets[other.facet].patch) return false;
-  if (input_.edges[edge_at_[one.facet][one.opposite]].ridge) return true;
-  const Vector<3>&a = input_.points[one.low], along = input_.points[one.high] - a;
-  const auto away = [&](const ModelSide& side) {
-    const Vector<3> d = input_.points[input_.facets[side.facet].corner[side.opposite]] - a;
+  if (input_.edges[edge_at_[one.facet][opposite(one)]].ridge) return true;
+  const auto [low, high] = ends_of(one.key);
+  const Vector<3>&a = input_.points[low], along = input_.points[high] - a;
+  const auto away = [&](const FacetSide& side) {
+    const Vector<3> d = input_.points[input_.facets[side.facet].corner[opposite(side)]] - a;
     return d - (dot(d, along) / dot(along, along)) * along;
   };
   const Vector<3> u = away(one), v = away(other);
@@ -181,44 +160,69 @@ bool PatchNormals::is_crease(const ModelSide& one, const ModelSide& other) const
 
 /// Curves at the ends of patches, and creases inside them.
 void PatchNormals::find_rims() {
-  for (std::size_t i = 0; i < sides_.size();) {
-    const std::size_t begin = i, end = end_of_run(i);
-    for (; i < end; ++i) {
-      const auto [low, high, f, opposite] = sides_[i];
-      const std::uint32_t edge = edge_at_[f][opposite];
+  sides_.each_run([&](std::span<const FacetSide> run) {
+    for (const FacetSide& side : run) {
+      const std::uint32_t edge = edge_at_[side.facet][opposite(side)];
       if (edge == no_edge) continue;
-      const bool crease = end == begin + 2 && is_crease(sides_[begin], sides_[begin + 1]);
-      for (const std::uint32_t k : {(opposite + 1) % 3, (opposite + 2) % 3}) {
-        const Node node = node_of_[f][k];
+      const bool crease = run.size() == 2 && is_crease(run);
+      for (const std::uint32_t k : {side.number + 0U, (side.number + 1U) % 3}) {
+        const Node node = node_of_[side.facet][k];
         if (crease) creased_[node] = 1;
-        const std::uint32_t at = input_.edges[edge].corner[0] == input_.facets[f].corner[k] ? 0 : 1;
-        rims_.push_back({node, {edge, at}});
+        const std::uint32_t corner = input_.facets[side.facet].corner[k];
+        rims_.push_back({node, {edge, input_.edges[edge].corner[0] == corner ? 0 : 1}});
       }
     }
-  }
+  });
   std::sort(rims_.begin(), rims_.end());
 }
 
 // ---- Normals ----
+
+Samples<3, 3> PatchNormals::samples() const {
+  constexpr double near = 0.98;
+  Samples<3, 3> result;
+  result.all.resize(normal_of_.size());
+  parallel_for(executor_, result.all.size(), [&](std::size_t i) {
+    const auto node = static_cast<Node>(i);
+    const auto facets = facets_at(node);
+    if (!input_.facets[facets[0].facet].smooth) return;
+    const Vector<3> mean = mean_normal(node), &normal = normal_of_[node];
+    auto& sample = result.all[node];
+    sample = {place(node), std::abs(dot(normal, mean)) > near ? normal : mean};
+    for (const NodeFacet& at : facets) sample.area += norm(facet_normal_of(at.facet)) / 6;
+  });
+  result.facets = node_of_;
+  for (std::size_t f = 0; f < result.facets.size(); ++f)
+    if (!input_.facets[f].smooth) result.facets[f].fill(none);
+  return result;
+}
+
+/// By area, to the side of the largest facet.
+Vector<3> PatchNormals::mean_normal(Node node) const {
+  Vector<3> largest, sum;
+  for (const NodeFacet& at : facets_at(node)) {
+    const Vector<3> normal = facet_normal_of(at.facet);
+    if (dot(normal, normal) > dot(largest, largest)) largest = normal;
+  }
+  for (const NodeFacet& at : facets_at(node)) {
+    const Vector<3> normal = facet_normal_of(at.facet);
+    sum += std::copysign(1.0, dot(normal, largest)) * normal;
+  }
+  return unit(sum);
+}
 
 Vector<3> PatchNormals::normal_at(Node node) const {
   const auto facets = facets_at(node);
   const std::uint32_t point = static_cast<std::uint32_t>(facets[0].key);
   if (!input_.facets[facets[0].facet].smooth || creased_[node] != 0 || input_.ends[point] != 0)
     return {};
-  Vector<3> largest, flat, sum;
+  Vector<3> flat;
   for (const NodeFacet& at : facets) {
     const Vector<3> normal = facet_normal_of(at.facet);
-    if (dot(normal, normal) > dot(largest, largest)) largest = normal;
     if (is_flat(at.facet) && dot(normal, normal) > dot(flat, flat)) flat = normal;
   }
   if (norm(flat) > 0) return unit(flat);
-  for (const NodeFacet& at : facets) {
-    const Vector<3> normal = facet_normal_of(at.facet);
-    sum += std::copysign(1.0, dot(normal, largest)) * normal;
-  }
-  const Vector<3> base = unit(sum);
-  Quadric quadric(base);
+  Quadric quadric(mean_normal(node));
   const auto neighbours = around(node);
   double farthest = 0;  // squared
   for (const Neighbour& n : neighbours) {
@@ -251,9 +255,6 @@ std::vector<PatchNormals::Neighbour> PatchNormals::around(Node node) const {
   std::vector<Node> beyond;
   for (const Node n : ring)
     if (creased_[n] == 0 && all.size() < most) add(n, beyond);
-  const auto place = [&](Node n) {
-    return input_.points[static_cast<std::uint32_t>(node_facets_[first_of_[n]].key)];
-  };
   std::vector<Neighbour> result;
   result.reserve(all.size());
   for (std::size_t i = 0; i < all.size(); ++i)

@@ -10,16 +10,10 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "geometry/curve_tangents.hpp"
+#include "geometry/facet_sides.hpp"
 #include "geometry/smooth_model.hpp"
 
 namespace ductile::meshadapt {
-
-/// A side of a facet: an edge of a curve, or between two facets of one patch.
-struct ModelSide {
-  std::uint32_t low, high;  ///< points
-  std::uint32_t facet, opposite;
-  auto operator<=>(const ModelSide&) const = default;
-};
 
 class PatchNormals {
  public:
@@ -41,6 +35,10 @@ class PatchNormals {
     return normal_of_[node_of_[facet][corner]];
   }
 
+  /// Each vertex of a smooth patch. Where the normal is turned by more than 11 degrees against the
+  /// mean of the facets there it is that of needles, and the mean counts.
+  Samples<3, 3> samples() const;
+
  private:
   using Node = std::uint32_t;
   using Triple = std::array<std::uint32_t, 3>;
@@ -55,17 +53,19 @@ class PatchNormals {
     auto operator<=>(const NodeFacet&) const = default;
   };
 
-  void find_sides();
   void find_edges();
   void find_nodes();
   void find_flat();
-  void keep_flat(std::size_t begin, std::size_t end, std::vector<std::uint8_t>& planes) const;
+  void keep_flat(std::span<const FacetSide> both, std::vector<std::uint8_t>& planes) const;
   void find_straight();
-  bool is_crease(const ModelSide& one, const ModelSide& other) const;
+  bool is_crease(std::span<const FacetSide> both) const;
   void find_rims();
-  std::size_t end_of_run(std::size_t begin) const;
   std::span<const NodeFacet> facets_at(Node node) const;
+  const Vector<3>& place(Node node) const {
+    return input_.points[static_cast<std::uint32_t>(node_facets_[first_of_[node]].key)];
+  }
   Vector<3> facet_normal_of(std::uint32_t facet) const;
+  Vector<3> mean_normal(Node node) const;
   Vector<3> normal_at(Node node) const;
   std::vector<Neighbour> around(Node node) const;
   Vector<3> along_rims(Node node, const Vector<3>& normal) const;
@@ -73,8 +73,8 @@ class PatchNormals {
   const runtime::Executor& executor_;
   const ModelInput<3>& input_;
   const CurveTangents<3>& curves_;
-  runtime::UnsetVector<ModelSide> sides_;  // sorted
-  std::vector<Triple> edge_at_;            // [facet][side]
+  FacetSides<3> sides_;
+  std::vector<Triple> edge_at_;  // [facet][side]
   std::vector<std::array<std::uint8_t, 3>> straight_;
   std::vector<std::uint8_t> flat_;               // [facet]
   runtime::UnsetVector<NodeFacet> node_facets_;  // sorted

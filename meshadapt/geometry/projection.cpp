@@ -49,6 +49,12 @@ struct OnPlane {
   }
 };
 
+/// Two different patches of a sorted list; 0 if there is no other.
+std::array<PatchId, 2> first_two(const std::vector<PatchId>& patches) {
+  if (patches.empty()) return {};
+  return {patches.front(), patches.back() == patches.front() ? 0 : patches.back()};
+}
+
 /// Goes to where two surfaces meet, near a point: to the line in which the planes meet that touch
 /// them near there, again and again. The normal of each is that in which a point of the other is
 /// off it, which is one however close to both the point is.
@@ -109,13 +115,13 @@ std::vector<Projection<Dim>> projections_of_patches(const Mesh<Dim>& mesh,
 
 std::vector<Projection<3>> projections_of_curves(const Mesh<3>& mesh,
                                                  const std::vector<Projection<3>>& of_patch,
-                                                 const std::vector<EdgeBetween>& edges) {
+                                                 std::span<const CurveEdge> edges) {
   std::vector<Projection<3>> of_curve;
   if (of_patch.empty()) return of_curve;
   of_curve.resize(mesh.curves.size());
-  for (const EdgeBetween& edge : edges) {
+  for (const CurveEdge& edge : edges) {
     if (of_curve[edge.curve]) continue;
-    auto [p, q] = edge.patches;
+    auto [p, q] = first_two(edge.patches);
     if (!of_patch[p]) std::swap(p, q);
     if (!of_patch[p]) continue;
     Projection<3> other = of_patch[q];

@@ -10,6 +10,7 @@
 
 #include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "geometry/classify.hpp"
 #include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
@@ -18,13 +19,6 @@ namespace ductile::meshadapt {
 /// caller's function throws. Thread safety: any thread.
 template <int Dim>
 using Projection = std::function<Vector<Dim>(const Vector<Dim>&)>;
-
-/// An edge of a curve, and two patches that meet there; the second is 0 if there is no other.
-struct EdgeBetween {
-  VertexId a;
-  CurveId curve;
-  std::array<PatchId, 2> patches;
-};
 
 /// [patch], empty where the model of the mesh is all that is known; or empty as a whole. `reach` is
 /// how far a point may be from its projection.
@@ -37,7 +31,7 @@ std::vector<Projection<Dim>> projections_of_patches(const Mesh<Dim>& mesh,
 /// points go to both.
 std::vector<Projection<3>> projections_of_curves(const Mesh<3>& mesh,
                                                  const std::vector<Projection<3>>& of_patch,
-                                                 const std::vector<EdgeBetween>& edges);
+                                                 std::span<const CurveEdge> edges);
 
 /// Throws InputError unless there is one function of a reference at most, and none is empty.
 void expect_functions(std::span<const SurfaceFunction> functions);

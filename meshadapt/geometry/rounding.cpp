@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "geometry/make_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -120,6 +123,21 @@ Vector<Dim> Rounding<Dim>::rounded(Vector<Dim> position, int class_dimension,
   return position;
 }
 
+template <int Dim>
+double roughness(const AnyMesh& mesh) {
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  try {
+    const auto made = make_mesh<Dim>(runtime::Executor({.threads = 1}), mesh,
+                                     {.complete_boundary = true}, neighbours, warnings);
+    return made.rounding ? made.rounding->tolerance : 0;
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
+template double roughness<2>(const AnyMesh&);
+template double roughness<3>(const AnyMesh&);
 template double rounding_tolerance<2>(const Precision&);
 template double rounding_tolerance<3>(const Precision&);
 template Flat<2> best_plane(std::span<const Vector<2>>);

@@ -12,12 +12,35 @@
 #include <span>
 #include <vector>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/divided.hpp"
 #include "geometry/projection.hpp"
 #include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
+
+/// The box around some points, with a margin.
+template <int Dim, std::size_t N>
+Box<Dim> box_around(const std::array<Vector<Dim>, N>& points, double margin) {
+  auto box = box_around(points);
+  for (int i = 0; i < Dim; ++i) {
+    box.low[i] -= margin;
+    box.high[i] += margin;
+  }
+  return box;
+}
+
+/// Unit normal of a facet, or along an edge in 3D; 0 if it is too small to have one.
+template <int Dim, std::size_t Corners>
+Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
+  Vector<Dim> direction;
+  if constexpr (Corners == Dim)
+    direction = facet_normal(corner);
+  else
+    direction = corner[1] - corner[0];
+  return unit(direction);
+}
 
 /// `Corners` is 2 for edges, 3 for triangles.
 template <int Dim, std::size_t Corners>
@@ -71,6 +94,7 @@ class Sheets {
   /// A point of a sheet, and how far it is from that of which it is the closest.
   struct Nearest {
     std::uint32_t sheet;
+    std::uint32_t facet;  ///< or edge, as they were given
     double distance;
     Vector<Dim> point;
     Vector<Dim> direction;  ///< there: unit normal of a facet, outwards, or along the edge

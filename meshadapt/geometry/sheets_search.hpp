@@ -1,5 +1,6 @@
 /// @file
-/// Decides part by part whether Sheets cover a simplex, that is, whether it may be where it is.
+/// The flat parts of Sheets, for sheets.cpp: where they are, which is the closest to a point, and
+/// whether they cover a simplex, that is, whether it may be where it is.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +11,59 @@
 #include <unordered_map>
 #include <utility>
 
-#include "geometry/sheets_parts.hpp"
+#include <boost/container/small_vector.hpp>
+
+#include "geometry/sheets.hpp"
+#include "mesh/box_hierarchy.hpp"
+#include "mesh/distance.hpp"
 #include "mesh/prism.hpp"
 
 namespace ductile::meshadapt {
+
+/// A tree of the facets; the parts of each are looked at one by one.
+template <int Dim, std::size_t Corners>
+struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
+  using BoxHierarchy<Dim>::BoxHierarchy;
+};
+
+/// Calls visit(part) for each part whose box has a point in common with this one.
+template <int Dim, std::size_t Corners>
+void Sheets<Dim, Corners>::each_meeting(const Box<Dim>& box, auto&& visit) const {
+  tree_->each_meeting(box, [&](std::uint32_t facet) {
+    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
+      if (meet(box, box_of_[part])) visit(part);
+  });
+}
+
+/// Some parts, among which the closest to a point is looked for: first where it is likely, then
+/// wherever it may be.
+template <int Dim, std::size_t Corners>
+struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t, 192> {
+  Closest closest(const Sheets& sheets, const Vector<Dim>& point) const {
+    Closest best;
+    const auto look = [&](std::uint32_t part) {
+      const Vector<Dim> at = closest_point(sheets.parts_[part].corner, point);
+      const double distance = norm(at - point);
+      if (distance < best.distance) best = {distance, at, part};
+    };
+    if (this->empty()) return best;
+    boost::container::small_vector<double, 192> square_of(this->size(),
+                                                          boost::container::default_init);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < this->size(); ++i) {
+      const Vector<Dim> aside = sheets.shape_of_[(*this)[i]].centre - point;
+      square_of[i] = dot(aside, aside);
+      if (std::pair(square_of[i], (*this)[i]) < std::pair(square_of[first], (*this)[first]))
+        first = i;
+    }
+    look((*this)[first]);
+    for (std::size_t i = 0; i < this->size(); ++i) {
+      const double reach = best.distance + sheets.shape_of_[(*this)[i]].radius;
+      if (square_of[i] < reach * reach) look((*this)[i]);
+    }
+    return best;
+  }
+};
 
 /// A sphere around all corners, not the smallest one.
 template <int Dim>

@@ -45,6 +45,8 @@ class FacetBender {
     }
   }
 
+  Samples<3, 3> samples() const { return normals_.samples(); }
+
   std::optional<Triangle> piece(std::size_t facet) const {
     Triangle piece{};
     bool bends = false;
@@ -132,6 +134,7 @@ SmoothModel<2>::SmoothModel(const runtime::Executor& executor, const ModelInput<
   chain.reserve(input.facets.size());
   for (const ModelFacet<2>& facet : input.facets) chain.push_back({facet.corner, facet.smooth});
   const CurveTangents<2> tangents(input, chain);
+  facet_samples = tangents.samples();
   facets.resize(chain.size());
   runtime::parallel_for(executor, chain.size(), [&](std::size_t f) {
     if (!input.facets[f].held) facets[f] = tangents.piece(f);
@@ -141,11 +144,13 @@ SmoothModel<2>::SmoothModel(const runtime::Executor& executor, const ModelInput<
 template <>
 SmoothModel<3>::SmoothModel(const runtime::Executor& executor, const ModelInput<3>& input) {
   const CurveTangents<3> tangents(input, input.edges);
+  edge_samples = tangents.samples();
   edges.resize(input.edges.size());
   runtime::parallel_for(executor, edges.size(),
                         [&](std::size_t e) { edges[e] = tangents.piece(e); });
   FacetBender bender(executor, input, tangents, edges);
   bender.narrow_curves();
+  facet_samples = bender.samples();
   facets.resize(input.facets.size());
   runtime::parallel_for(executor, facets.size(),
                         [&](std::size_t f) { facets[f] = bender.piece(f); });

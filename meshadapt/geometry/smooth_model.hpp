@@ -13,6 +13,7 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/curved_simplex.hpp"
+#include "geometry/samples.hpp"
 
 namespace ductile::meshadapt {
 
@@ -55,6 +56,8 @@ struct SmoothModel {
 
   Pieces<Dim> facets;  ///< [facet], nothing where it is flat
   Pieces<2> edges;     ///< [edge], nothing where it is straight
+  Samples<Dim, Dim> facet_samples;
+  Samples<Dim, 2> edge_samples;
 
   /// Linear in the input, times a logarithm. Thread safety: one caller; runs on the executor.
   SmoothModel(const runtime::Executor& executor, const ModelInput<Dim>& input);

@@ -6,13 +6,14 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "geometry/boundary_parts.hpp"
 #include "geometry/divided.hpp"
 #include "geometry/projection.hpp"
-#include "geometry/sheets_parts.hpp"
 #include "mesh/box_hierarchy.hpp"
 #include "mesh/distance.hpp"
 
@@ -23,43 +24,44 @@ namespace {
 template <int Dim>
 class SurfaceMaker {
  public:
-  SurfaceMaker(const Mesh<Dim>& mesh, const ClassifiedFacets<Dim>& classified,
-               const SurfaceOptions& options)
-      : mesh_(mesh),
-        facets_(classified.facets),
-        plane_of_(classified.plane_of),
-        normals_(classified.normals),
-        edges_(classified.edges),
-        places_(classified.places),
-        options_(options) {}
+  SurfaceMaker(const BoundaryParts<Dim>& parts, std::span<const CurveEdge> edges)
+      : parts_(parts), mesh_(parts.mesh), facets_(parts.facets), edges_(edges) {}
 
-  std::shared_ptr<const Surface<Dim>> make(const runtime::Executor& executor) const {
+  std::shared_ptr<const Surface<Dim>> make() const {
     ModelInput<Dim> input = model_input();
-    SmoothModel<Dim> model(executor, input);
+    SmoothModel<Dim> model(parts_.executor, input);
     const std::vector<Vector<Dim>> bends = bends_of(model);
     constexpr int rounds = 4;
     for (int round = 1; round <= rounds; ++round) {
       if (!hold_facing(model, bends, round == rounds, input)) break;
-      model = SmoothModel<Dim>(executor, input);
+      model = SmoothModel<Dim>(parts_.executor, input);
     }
     std::vector<typename Sheets<Dim, Dim>::Part> facet_parts;
     facet_parts.reserve(facets_.size());
-    for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (std::uint32_t f = 0; f < facets_.size(); ++f)
       facet_parts.push_back({points(corners(facets_[f])), facets_[f].patch,
-                             facets_[f].other != none, wide_normal(f)});
+                             facets_[f].other != none,
+                             parts_.is_noise(f) ? parts_.noise_normals[f] : Vector<Dim>{}});
     std::vector<typename Sheets<Dim, 2>::Part> edge_parts;
     typename SmoothModel<Dim>::template Pieces<2> edge_pieces;
+    std::vector<typename Samples<Dim, 2>::Facet> sampled_edges;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       if (!mesh_.curves[edges_[e].curve].smooth) continue;
       edge_parts.push_back(
           {points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true, {}});
       edge_pieces.push_back(model.edges[e]);
+      sampled_edges.push_back(model.edge_samples.facets[e]);
     }
-    const auto on_patches = projections_of_patches(mesh_, options_.functions, reach());
+    model.edge_samples.facets = std::move(sampled_edges);
+    model.edge_samples.connect();
+    model.facet_samples.connect();
+    const auto on_patches = projections_of_patches(mesh_, parts_.options.functions, reach());
     expect_on(on_patches);
     return std::shared_ptr<const Surface<Dim>>(new Surface<Dim>{
-        {facet_parts, options_.tolerance, model.facets, on_patches, options_.least_turn},
-        {edge_parts, options_.tolerance, edge_pieces, on_curves(on_patches)}});
+        {facet_parts, parts_.within.surface, model.facets, on_patches, parts_.within.least_turn},
+        {edge_parts, parts_.within.surface, edge_pieces, on_curves(on_patches)},
+        std::move(model.facet_samples),
+        std::move(model.edge_samples)});
   }
 
  private:
@@ -74,12 +76,12 @@ class SurfaceMaker {
   /// may be part of a small ball.
   double reach() const {
     double longest = 0;
-    if (options_.functions.empty()) return longest;
+    if (parts_.options.functions.empty()) return longest;
     for (const TaggedFacet<Dim>& facet : facets_) {
       const auto p = points(facet.corners);
       for (std::size_t i = 1; i < p.size(); ++i) longest = std::max(longest, norm(p[i] - p[i - 1]));
     }
-    return longest + fitting * options_.tolerance;
+    return longest + fitting * parts_.within.surface;
   }
 
   /// Are the vertices of the mesh on them?
@@ -90,72 +92,62 @@ class SurfaceMaker {
       for (const VertexId v : facet.corners) {
         const Vector<Dim>& at = mesh_.site_of[v].position;
         const double distance = norm(on_patches[facet.patch](at) - at);
-        if (distance > fitting * options_.tolerance)
+        if (distance > fitting * parts_.within.surface)
           throw InputError("the function of the surface with the reference " +
                            std::to_string(facet.data.reference) + ": expected vertex " +
                            std::to_string(v + 1) + " of its facets within " +
-                           number(fitting * options_.tolerance) + " of it, found " +
+                           number(fitting * parts_.within.surface) + " of it, found " +
                            number(distance));
       }
     }
   }
 
   std::vector<Projection<Dim>> on_curves(const std::vector<Projection<Dim>>& on_patches) const {
-    if constexpr (Dim == 3) {
-      std::vector<EdgeBetween> edges;
-      for (const SurfaceEdge& edge : edges_) edges.push_back({edge.a, edge.curve, edge.patches});
-      return projections_of_curves(mesh_, on_patches, edges);
-    }
+    if constexpr (Dim == 3) return projections_of_curves(mesh_, on_patches, edges_);
     return {};
   }
 
-  /// 0 if it is the facet's own.
-  Vector<Dim> wide_normal(std::size_t facet) const {
-    return normals_.empty() ? Vector<Dim>{} : normals_[facet];
-  }
-  Vector<Dim> direction(std::size_t facet) const {
-    const Vector<Dim> wide = wide_normal(facet);
-    return norm(wide) > 0 ? wide : direction_of(points(corners(facets_[facet])));
+  /// The unit normal of a facet of the model.
+  Vector<Dim> direction(std::uint32_t facet) const {
+    return parts_.is_noise(facet) ? parts_.noise_normals[facet]
+                                  : direction_of(points(corners(facets_[facet])));
   }
 
   template <std::size_t N>
   std::array<Vector<Dim>, N> points(const std::array<VertexId, N>& vertices) const {
     std::array<Vector<Dim>, N> result;
-    for (std::size_t i = 0; i < N; ++i) result[i] = place(vertices[i]);
+    for (std::size_t i = 0; i < N; ++i) result[i] = parts_.place(vertices[i]);
     return result;
   }
 
-  const Vector<Dim>& place(VertexId v) const {
-    return places_.empty() ? mesh_.site_of[v].position : places_[v];
-  }
-  bool is_levelled(const Facet<Dim>& corners) const {
+  bool is_denoised(const Facet<Dim>& corners) const {
     return std::any_of(corners.begin(), corners.end(),
-                       [&](VertexId v) { return place(v) != mesh_.site_of[v].position; });
+                       [&](VertexId v) { return parts_.is_denoised(v); });
   }
 
   ModelInput<Dim> model_input() const {
     ModelInput<Dim> input;
-    std::tie(input.tolerance, input.flat, input.least_turn) =
-        std::tie(options_.tolerance, options_.flat, options_.least_turn);
+    std::tie(input.flat, input.tolerance, input.least_turn) =
+        std::tie(parts_.within.flat, parts_.within.surface, parts_.within.least_turn);
     std::vector<std::uint32_t> number_of(mesh_.vertex_slots(), none);
     const auto number = [&](VertexId v) {
       if (number_of[v] == none) {
         number_of[v] = static_cast<std::uint32_t>(input.points.size());
-        input.points.push_back(place(v));
+        input.points.push_back(parts_.place(v));
         input.ends.push_back(mesh_.kind_of[v].corner ? 1 : 0);
       }
       return number_of[v];
     };
     input.facets.reserve(facets_.size());
     for (std::size_t f = 0; f < facets_.size(); ++f) {
-      ModelFacet<Dim> facet{corners(facets_[f]), facets_[f].patch, plane_of_[f],
+      ModelFacet<Dim> facet{corners(facets_[f]), facets_[f].patch, parts_.plane_of[f],
                             mesh_.patches[facets_[f].patch].smooth};
-      if (facet.smooth && is_levelled(facet.corner))
+      if (facet.smooth && is_denoised(facet.corner))
         facet.plane = static_cast<std::uint32_t>(mesh_.patches.size() + f);  // no longer that
       for (std::uint32_t& corner : facet.corner) corner = number(corner);
       input.facets.push_back(facet);
     }
-    for (const SurfaceEdge& edge : edges_) {
+    for (const CurveEdge& edge : edges_) {
       const Curve& curve = mesh_.curves[edge.curve];
       input.edges.push_back({{number(edge.a), number(edge.b)}, curve.smooth, curve.ridge});
     }
@@ -172,7 +164,7 @@ class SurfaceMaker {
     const auto box_of = [&](std::size_t f) { return box_around(points(corners(facets_[f]))); };
     const BoxHierarchy<Dim> index(facets_.size(), box_of);
     bool any = false;
-    for (std::size_t f = 0; f < facets_.size(); ++f) {
+    for (std::uint32_t f = 0; f < facets_.size(); ++f) {
       if (!model.facets[f] || facets_[f].other != none) continue;
       const double reach = 4 * bend(*model.facets[f]);
       bool& held = input.facets[f].held;
@@ -196,7 +188,7 @@ class SurfaceMaker {
   }
 
   /// Is another facet turned the other way, not joined to this one, and within reach of it?
-  bool is_facing(std::size_t facet, std::uint32_t other, double reach) const {
+  bool is_facing(std::uint32_t facet, std::uint32_t other, double reach) const {
     if (facets_[other].other != none) return false;
     const Facet<Dim> own = corners(facets_[facet]), others = corners(facets_[other]);
     for (const VertexId v : own)
@@ -212,14 +204,14 @@ class SurfaceMaker {
       const auto flat = points(corners(facets_[f]));
       if (!model.facets[f]) return std::vector{flat};
       std::vector<std::array<Vector<Dim>, Dim>> parts;
-      Divider<Dim, Dim>(*model.facets[f], options_.tolerance / 8).each([&](const auto& part) {
+      Divider<Dim, Dim>(*model.facets[f], parts_.within.surface / 8).each([&](const auto& part) {
         parts.push_back(part.corner);
       });
       return parts;
     };
     const double least =
         0.5 * gap(points(corners(facets_[facet])), points(corners(facets_[other])));
-    if (!(least > 1e-6 * options_.tolerance)) return true;
+    if (!(least > 1e-6 * parts_.within.surface)) return true;
     const auto own = parts_of(facet), others = parts_of(other);
     return std::any_of(own.begin(), own.end(), [&](const auto& p) {
       return std::any_of(others.begin(), others.end(), [&](const auto& q) {
@@ -258,34 +250,29 @@ class SurfaceMaker {
     return std::min(least, distance(centre));
   }
 
+  const BoundaryParts<Dim>& parts_;
   const Mesh<Dim>& mesh_;
   std::span<const TaggedFacet<Dim>> facets_;
-  std::span<const PatchId> plane_of_;
-  std::span<const Vector<Dim>> normals_;
-  std::span<const SurfaceEdge> edges_;
-  std::span<const Vector<Dim>> places_;
-  const SurfaceOptions& options_;
+  std::span<const CurveEdge> edges_;
 };
 
 }  // namespace
 
 template <int Dim>
-std::shared_ptr<const Surface<Dim>> make_surface(const runtime::Executor& executor,
-                                                 const Mesh<Dim>& mesh,
-                                                 const ClassifiedFacets<Dim>& classified,
-                                                 const SurfaceOptions& options) {
+std::shared_ptr<const Surface<Dim>> make_surface(const BoundaryParts<Dim>& parts,
+                                                 std::span<const CurveEdge> edges) {
   const auto is_smooth = [](const auto& of) { return of.smooth; };
-  if (std::none_of(mesh.patches.begin(), mesh.patches.end(), is_smooth) &&
-      std::none_of(mesh.curves.begin(), mesh.curves.end(), is_smooth))
+  const auto& patches = parts.mesh.patches;
+  const auto& curves = parts.mesh.curves;
+  if (std::none_of(patches.begin(), patches.end(), is_smooth) &&
+      std::none_of(curves.begin(), curves.end(), is_smooth))
     return nullptr;
-  return SurfaceMaker<Dim>(mesh, classified, options).make(executor);
+  return SurfaceMaker<Dim>(parts, edges).make();
 }
 
-template std::shared_ptr<const Surface<2>> make_surface(const runtime::Executor&, const Mesh<2>&,
-                                                        const ClassifiedFacets<2>&,
-                                                        const SurfaceOptions&);
-template std::shared_ptr<const Surface<3>> make_surface(const runtime::Executor&, const Mesh<3>&,
-                                                        const ClassifiedFacets<3>&,
-                                                        const SurfaceOptions&);
+template std::shared_ptr<const Surface<2>> make_surface(const BoundaryParts<2>&,
+                                                        std::span<const CurveEdge>);
+template std::shared_ptr<const Surface<3>> make_surface(const BoundaryParts<3>&,
+                                                        std::span<const CurveEdge>);
 
 }  // namespace ductile::meshadapt

@@ -1,4 +1,4 @@
-#include "geometry/touching.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,12 +11,13 @@
 namespace ductile::meshadapt {
 
 template <int Dim>
-std::vector<std::uint8_t> touching_vertices(const runtime::Executor& executor,
-                                            const Mesh<Dim>& mesh,
-                                            const std::vector<Facet<Dim>>& facets, double within) {
+void find_touching(BoundaryParts<Dim>& parts, double distance) {
+  std::vector<Facet<Dim>> facets;
+  for (const TaggedFacet<Dim>& facet : parts.facets)
+    if (facet.other == none) facets.push_back(facet.corners);
   const auto points = [&](std::size_t f) {
     std::array<Vector<Dim>, Dim> at;
-    for (std::size_t i = 0; i < Dim; ++i) at[i] = mesh.site_of[facets[f][i]].position;
+    for (std::size_t i = 0; i < Dim; ++i) at[i] = parts.mesh.site_of[facets[f][i]].position;
     return at;
   };
   const BoxHierarchy<Dim> index(facets.size(),
@@ -24,29 +25,22 @@ std::vector<std::uint8_t> touching_vertices(const runtime::Executor& executor,
   using Contact = std::pair<VertexId, std::uint32_t>;  // and a facet
   const auto find = [&](std::size_t f, auto&& append) {
     for (const VertexId v : facets[f]) {
-      const Vector<Dim>& at = mesh.site_of[v].position;
-      auto box = Box<Dim>{at, at};
-      for (int i = 0; i < Dim; ++i) {
-        box.low[i] -= within;
-        box.high[i] += within;
-      }
-      index.each_meeting(box, [&](std::size_t g) {
-        if (contains(facets[g], v) || norm(closest_point(points(g), at) - at) > within) return;
+      const Vector<Dim>& at = parts.mesh.site_of[v].position;
+      index.each_meeting(box_around(std::array{at}, distance), [&](std::size_t g) {
+        if (contains(facets[g], v) || norm(closest_point(points(g), at) - at) > distance) return;
         append(Contact{v, static_cast<std::uint32_t>(g)});
       });
     }
   };
-  std::vector<std::uint8_t> touching(mesh.vertex_slots());
-  for (const auto& [v, facet] : runtime::parallel_collect<Contact>(executor, facets.size(), find)) {
-    touching[v] = 1;
-    for (const VertexId corner : facets[facet]) touching[corner] = 1;
+  parts.kept.assign(parts.mesh.vertex_slots(), 0);
+  for (const auto& [v, facet] :
+       runtime::parallel_collect<Contact>(parts.executor, facets.size(), find)) {
+    parts.kept[v] = 1;
+    for (const VertexId corner : facets[facet]) parts.kept[corner] = 1;
   }
-  return touching;
 }
 
-template std::vector<std::uint8_t> touching_vertices<2>(const runtime::Executor&, const Mesh<2>&,
-                                                        const std::vector<Facet<2>>&, double);
-template std::vector<std::uint8_t> touching_vertices<3>(const runtime::Executor&, const Mesh<3>&,
-                                                        const std::vector<Facet<3>>&, double);
+template void find_touching(BoundaryParts<2>&, double);
+template void find_touching(BoundaryParts<3>&, double);
 
 }  // namespace ductile::meshadapt

@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
+#include "geometry/curvature_fit.hpp"
 #include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::curvature_test {
 namespace {
@@ -180,6 +186,110 @@ TEST(CurvedSizes, AreThoseOfACurve) {
     ++count;
   }
   EXPECT_GT(count, 12U);
+}
+
+/// The mesh is coarser than the chords that the tolerance allows; the geometry knows better.
+template <int Dim>
+void takes_sizes_from_the_geometry(int fine, double turn) {
+  AnyMesh from = test::make_grid(test::unit_grid(Dim, fine));
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, 7));
+  test::bend(from, turn);
+  test::bend(any, turn);
+  const double tolerance = 0.01 * turn * turn / 4;
+  AdaptOptions options;
+  options.make.hausdorff_tolerance = tolerance;
+  options.make.geometry =
+      std::make_shared<const Geometry>(executor, from, GeometryOptions{.tolerance = tolerance});
+  const auto bounded =
+      bound_at_curved_boundaries(executor, any, constant_metric(any, asked), options);
+  std::size_t count = 0;
+  each_on_curved_sides<Dim>(any, [&](std::size_t v, double radius, const Vector<Dim>& along) {
+    Metric<Dim> metric;
+    std::copy_n(&bounded.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
+    EXPECT_NEAR(size_along(metric, along) / std::sqrt(8 * tolerance * radius), 1, 0.05);
+    ++count;
+  });
+  EXPECT_GT(count, 12U);
+}
+
+TEST(CurvedSizes, AreThoseOfTheGeometryOnACoarseMesh) {
+  for (const double turn : {1.0, 1.5, 2.0}) {
+    SCOPED_TRACE(turn);
+    takes_sizes_from_the_geometry<2>(40, turn);
+    takes_sizes_from_the_geometry<3>(20, turn);
+  }
+}
+
+// ---- The fit ----
+
+using test::Random;
+
+Vector<3> random_direction(Random& random) {
+  Vector<3> v;
+  do
+    for (double& x : v.x) x = test::uniform(random, -1, 1);
+  while (norm(v) > 1 || norm(v) < 0.1);
+  return unit(v);
+}
+
+/// The largest curvatures of fits to points at random up to 60 degrees away, to one side mostly,
+/// with directions to either side: of a sphere, or a cylinder along `axis`.
+TEST(CurvatureFit, IsExactOnSpheresAndCylinders) {
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {
+    Random random(seed);
+    const bool is_sphere = test::chance(random, 0.5);
+    const double radius = std::pow(10.0, test::uniform(random, -2, 2));
+    const Vector<3> axis = random_direction(random);
+    const Vector<3> normal = unit(cross(axis, random_direction(random)));
+    const Vector<3> around = cross(axis, normal);
+    CurvatureFit<3, 3> fit(normal);
+    for (int i = 0; i < 12; ++i) {
+      const double u = test::uniform(random, -0.2, 1), v = test::uniform(random, -0.2, 1);
+      const Vector<3> there = is_sphere ? unit(normal + u * axis + v * around)
+                                        : std::cos(v) * normal + std::sin(v) * around;
+      const Vector<3> along = (is_sphere ? 0 : u * radius) * axis;
+      const double side = test::chance(random, 0.5) ? 1 : -1;
+      fit.add(radius * (there - normal) + along, side * there, test::uniform(random, 0.1, 1));
+    }
+    SCOPED_TRACE(seed);
+    const auto found = fit.curvature();
+    EXPECT_EQ(found.value[0], 0);
+    const std::size_t most = found.value[1] > found.value[2] ? 1 : 2;
+    EXPECT_NEAR(found.value[most] * radius, 1, 1e-6);
+    EXPECT_NEAR(found.value[3 - most] * radius, is_sphere ? 1 : 0, 1e-6);
+    if (!is_sphere) {
+      EXPECT_NEAR(std::abs(dot(found.vector[most], around)), 1, 1e-6);
+    }
+  }
+}
+
+TEST(CurvatureFit, IsExactOnCirclesInThePlaneAndInSpace) {
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {
+    Random random(seed);
+    const double radius = std::pow(10.0, test::uniform(random, -2, 2));
+    const Vector<3> out = random_direction(random);
+    const Vector<3> along = unit(cross(out, random_direction(random)));
+    const double turned = test::uniform(random, 0, 6);
+    const Vector<2> out_2d{{std::cos(turned), std::sin(turned)}}, along_2d{{-out_2d[1], out_2d[0]}};
+    CurvatureFit<3, 2> fit(along);
+    CurvatureFit<2, 2> fit_2d(along_2d);
+    for (int i = 0; i < 6; ++i) {
+      const double angle = test::uniform(random, -0.2, 1), weight = test::uniform(random, 0.1, 1);
+      const double s = std::sin(angle), c = std::cos(angle);
+      const double side = test::chance(random, 0.5) ? 1 : -1;
+      fit.add(radius * ((c - 1) * out + s * along), side * (c * along - s * out), weight);
+      fit_2d.add(radius * ((c - 1) * out_2d + s * along_2d), side * (c * along_2d - s * out_2d),
+                 weight);
+    }
+    SCOPED_TRACE(seed);
+    EXPECT_NEAR(fit.curvature().value[1] * radius, 1, 1e-6);
+    EXPECT_NEAR(fit_2d.curvature().value[1] * radius, 1, 1e-6);
+    EXPECT_NEAR(std::abs(dot(fit.curvature().vector[0], out)), 1, 1e-6);
+    EXPECT_EQ(fit.curvature().value[2], 0);
+    EXPECT_LT(norm(fit.rise()(radius * ((std::cos(0.5) - 1) * out + std::sin(0.5) * along)) -
+                   fit.rise()({})),
+              0.05 * radius);
+  }
 }
 
 // ---- Sizes from curvature alone ----

@@ -1,14 +1,14 @@
-#include "geometry/wide_normals.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/unit.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "geometry/facet_sides.hpp"
 #include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
@@ -16,24 +16,23 @@ namespace ductile::meshadapt {
 namespace {
 
 template <int Dim>
-class WideNormals {
+class NoiseNormals {
  public:
   using Points = std::array<Vector<Dim>, Dim>;
   using Others = std::array<std::uint32_t, Dim>;
 
-  WideNormals(const Mesh<Dim>& mesh, const std::vector<TaggedFacet<Dim>>& facets,
-              std::span<const Others> beside, const WideNormalOptions& options)
-      : mesh_(mesh), facets_(facets), beside_(beside), options_(options) {}
+  NoiseNormals(const BoundaryParts<Dim>& parts, std::span<const Others> beside)
+      : mesh_(parts.mesh), facets_(parts.facets), beside_(beside), within_(parts.within) {}
 
   Vector<Dim> own(std::uint32_t facet) const { return unit(facet_normal(points(facet))); }
 
   /// Is it lower than noise may be twice, and does it turn by much at a side?
   bool may_be_noise(std::uint32_t facet) const {
     const Points p = points(facet);
-    if (!(norm(altitude(p)) < 2 * options_.tolerance)) return false;
+    if (!(norm(altitude(p)) < 2 * within_.surface)) return false;
     const Vector<Dim> normal = unit(facet_normal(p));
     return std::any_of(beside_[facet].begin(), beside_[facet].end(), [&](std::uint32_t other) {
-      return other != none && sign(facet, other) * dot(normal, own(other)) < options_.least_turn;
+      return other != none && sign(facet, other) * dot(normal, own(other)) < within_.least_turn;
     });
   }
 
@@ -47,8 +46,8 @@ class WideNormals {
     if (!(norm(sum) > 0)) return {};
     constexpr double most_rise = 1.5;  // of the tolerance; what is behind a ridge rises by twice
     const Vector<Dim> normal = unit(sum);
-    if (dot(own(facet), normal) > options_.least_turn) return normal;
-    if (!(rise(facet, normal) < most_rise * options_.tolerance)) return {};
+    if (dot(own(facet), normal) > within_.least_turn) return normal;
+    if (!(rise(facet, normal) < most_rise * within_.surface)) return {};
     return normal;
   }
 
@@ -64,7 +63,7 @@ class WideNormals {
     constexpr double least = 0.5;  // three sides of a cube at a corner have more
     if (!(norm(sum) >= least * area)) return {};
     const Vector<Dim> normal = unit(sum);
-    if (!(std::abs(dot(altitude(points(facet)), normal)) < options_.tolerance)) return {};
+    if (!(std::abs(dot(altitude(points(facet)), normal)) < within_.surface)) return {};
     for (const Vector<Dim>& across : divisions(normal))
       if (turns(places, across, area)) return {};
     return normal;
@@ -105,11 +104,11 @@ class WideNormals {
   /// The rise of a facet and its smooth continuation in a direction, as far as noise may reach.
   double rise(std::uint32_t facet, const Vector<Dim>& direction) const {
     const Vector<Dim> origin = centre(points(facet)), normal = own(facet);
-    const double far = reach * options_.tolerance;
+    const double far = reach * within_.surface;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     const auto goes_on = [&](std::uint32_t f, double side) {
       const Points p = points(f);
-      if (!(side * dot(unit(facet_normal(p)), normal) > options_.least_turn)) return false;
+      if (!(side * dot(unit(facet_normal(p)), normal) > within_.least_turn)) return false;
       for (const Vector<Dim>& corner : p) {
         const Vector<Dim> away = corner - origin;
         const double height = dot(away, direction) * std::min(1.0, far / norm(away));
@@ -141,7 +140,7 @@ class WideNormals {
       if (!visit(f, side)) continue;
       for (const std::uint32_t next : beside_[f]) {
         if (next == none || found.size() == most || is_found(next)) continue;
-        if (norm(closest_point(points(next), origin) - origin) <= reach * options_.tolerance)
+        if (norm(closest_point(points(next), origin) - origin) <= reach * within_.surface)
           found.emplace_back(next, side * sign(f, next));
       }
     }
@@ -180,8 +179,8 @@ class WideNormals {
 
   /// Do those ahead of the facet and those behind it, on the mean, turn by much?
   bool turns(const std::vector<Place>& places, const Vector<Dim>& across, double area) const {
-    constexpr double little = 0.15;                   // of the area, which says nothing
-    const double between = 0.5 * options_.tolerance;  // what is as close counts for both
+    constexpr double little = 0.15;                // of the area, which says nothing
+    const double between = 0.5 * within_.surface;  // what is as close counts for both
     Vector<Dim> ahead, behind;
     double ahead_area = 0, behind_area = 0;
     for (const Place& place : places) {
@@ -193,18 +192,18 @@ class WideNormals {
       behind_area += (1 - share) * size;
     }
     return std::min(ahead_area, behind_area) > little * area &&
-           dot(ahead, behind) < options_.least_turn * norm(ahead) * norm(behind);
+           dot(ahead, behind) < within_.least_turn * norm(ahead) * norm(behind);
   }
 
   const Mesh<Dim>& mesh_;
   const std::vector<TaggedFacet<Dim>>& facets_;
   std::span<const Others> beside_;
-  const WideNormalOptions& options_;
+  const Tolerances& within_;
 };
 
 /// From what is noise to what is beside it, towards ridges.
 template <int Dim>
-void spread(const runtime::Executor& executor, const WideNormals<Dim>& normals,
+void spread(const runtime::Executor& executor, const NoiseNormals<Dim>& normals,
             std::vector<Vector<Dim>>& normal_of) {
   constexpr int most_rounds = 16;
   std::vector<Vector<Dim>> next = normal_of;
@@ -222,29 +221,20 @@ void spread(const runtime::Executor& executor, const WideNormals<Dim>& normals,
 }  // namespace
 
 template <int Dim>
-std::vector<Vector<Dim>> wide_normals(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                      const std::vector<TaggedFacet<Dim>>& facets,
-                                      std::span<const std::array<std::uint32_t, Dim>> beside,
-                                      const WideNormalOptions& options) {
-  const WideNormals<Dim> normals(mesh, facets, beside, options);
-  std::vector<Vector<Dim>> normal_of(facets.size());
-  runtime::parallel_for(executor, facets.size(), [&](std::size_t i) {
+void find_noise(BoundaryParts<Dim>& parts, std::span<const std::array<std::uint32_t, Dim>> beside) {
+  const NoiseNormals<Dim> normals(parts, beside);
+  std::vector<Vector<Dim>> normal_of(parts.facets.size());
+  runtime::parallel_for(parts.executor, normal_of.size(), [&](std::size_t i) {
     const auto f = static_cast<std::uint32_t>(i);
     if (normals.may_be_noise(f)) normal_of[f] = normals.around(f).value_or(Vector<Dim>{});
   });
   const auto is_own = [](const Vector<Dim>& normal) { return !(dot(normal, normal) > 0); };
-  if (std::all_of(normal_of.begin(), normal_of.end(), is_own)) return {};
-  spread(executor, normals, normal_of);
-  return normal_of;
+  if (std::all_of(normal_of.begin(), normal_of.end(), is_own)) return;
+  spread(parts.executor, normals, normal_of);
+  parts.noise_normals = std::move(normal_of);
 }
 
-template std::vector<Vector<2>> wide_normals<2>(const runtime::Executor&, const Mesh<2>&,
-                                                const std::vector<TaggedFacet<2>>&,
-                                                std::span<const std::array<std::uint32_t, 2>>,
-                                                const WideNormalOptions&);
-template std::vector<Vector<3>> wide_normals<3>(const runtime::Executor&, const Mesh<3>&,
-                                                const std::vector<TaggedFacet<3>>&,
-                                                std::span<const std::array<std::uint32_t, 3>>,
-                                                const WideNormalOptions&);
+template void find_noise<2>(BoundaryParts<2>&, std::span<const std::array<std::uint32_t, 2>>);
+template void find_noise<3>(BoundaryParts<3>&, std::span<const std::array<std::uint32_t, 3>>);
 
 }  // namespace ductile::meshadapt

@@ -1,4 +1,4 @@
-#include "geometry/levelled.hpp"
+#include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 
 #include "core/unit.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "geometry/facet_sides.hpp"
 
 namespace ductile::meshadapt {
 
@@ -15,11 +14,11 @@ namespace {
 /// The curves at the vertices of a mesh.
 class Chains {
  public:
-  Chains(std::span<const std::array<VertexId, 2>> edges, std::size_t vertex_count)
+  Chains(const std::vector<CurveEdge>& edges, std::size_t vertex_count)
       : count_(vertex_count), next_(vertex_count, {none, none}) {
-    for (const auto& [a, b] : edges) {
-      add(a, b);
-      add(b, a);
+    for (const CurveEdge& edge : edges) {
+      add(edge.a, edge.b);
+      add(edge.b, edge.a);
     }
   }
   bool has(VertexId v) const { return count_[v] != 0; }
@@ -42,21 +41,21 @@ class Chains {
 };
 
 template <int Dim>
-class Leveller {
+class Denoiser {
  public:
-  Leveller(const Mesh<Dim>& mesh, const LevelledInput<Dim>& input)
-      : mesh_(mesh), input_(input), chains_(input.curve_edges, mesh.vertex_slots()) {
-    find_nodes();
+  Denoiser(const BoundaryParts<Dim>& parts, const std::vector<CurveEdge>& curve_edges)
+      : parts_(parts), mesh_(parts.mesh), chains_(curve_edges, mesh_.vertex_slots()) {
+    find_nodes(held(curve_edges));
   }
 
-  std::vector<Vector<Dim>> places(const runtime::Executor& executor) {
+  std::vector<Vector<Dim>> places() {
     constexpr int steps = 30;
     if (nodes_.empty()) return {};
     places_.resize(mesh_.vertex_slots());
     for (std::size_t v = 0; v < places_.size(); ++v) places_[v] = mesh_.site_of[v].position;
     std::vector<Vector<Dim>> next(nodes_.size());
     for (int step = 0; step < steps; ++step) {
-      runtime::parallel_for(executor, nodes_.size(),
+      runtime::parallel_for(parts_.executor, nodes_.size(),
                             [&](std::size_t n) { next[n] = moved(nodes_[n]); });
       for (std::size_t n = 0; n < nodes_.size(); ++n) places_[nodes_[n].vertex] = next[n];
     }
@@ -75,14 +74,31 @@ class Leveller {
 
   const Vector<Dim>& at(VertexId v) const { return mesh_.site_of[v].position; }
 
-  void find_nodes() {
+  /// [vertex], whether it stays.
+  std::vector<std::uint8_t> held(const std::vector<CurveEdge>& curve_edges) const {
+    std::vector<std::uint8_t> held = parts_.kept;
+    for (VertexId v = 0; v < held.size(); ++v)
+      if (parts_.mesh.kind_of[v].corner || parts_.mesh.kind_of[v].required) held[v] = 1;
+    for (const TaggedFacet<Dim>& facet : parts_.facets)
+      if (parts_.mesh.patches[facet.patch].required)
+        for (const VertexId v : facet.corners) held[v] = 1;
+    if constexpr (Dim == 2)
+      parts_.sides.each_run([&](std::span<const FacetSide> run) {
+        if (parts_.ends_patch(run)) held[static_cast<VertexId>(run[0].key)] = 1;
+      });
+    for (const CurveEdge& edge : curve_edges)
+      if (edge.data.required) held[edge.a] = held[edge.b] = 1;
+    return held;
+  }
+
+  void find_nodes(const std::vector<std::uint8_t>& held) {
     std::vector<std::uint8_t> is_noise(mesh_.vertex_slots());
-    for (std::size_t f = 0; f < input_.normals.size(); ++f)
-      if (norm(input_.normals[f]) > 0)
-        for (const VertexId v : input_.facets[f].corners) is_noise[v] = 1;
+    for (std::uint32_t f = 0; f < parts_.facets.size(); ++f)
+      if (parts_.is_noise(f))
+        for (const VertexId v : parts_.facets[f].corners) is_noise[v] = 1;
     std::vector<std::uint32_t> node_of(mesh_.vertex_slots(), none);
     for (VertexId v = 0; v < is_noise.size(); ++v) {
-      if (input_.held[v] != 0) continue;
+      if (held[v] != 0) continue;
       if (chains_.has(v)) {
         if (!chains_.passes(v) || (turns(v) && turns_widely(v))) continue;
         if (!turns_nearby(v)) continue;
@@ -92,8 +108,8 @@ class Leveller {
       node_of[v] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.push_back({v, {}, {}, {}, {}});
     }
-    for (std::uint32_t f = 0; f < input_.facets.size() && !nodes_.empty(); ++f)
-      for (const VertexId v : input_.facets[f].corners)
+    for (std::uint32_t f = 0; f < parts_.facets.size() && !nodes_.empty(); ++f)
+      for (const VertexId v : parts_.facets[f].corners)
         if (node_of[v] != none) add_facet(nodes_[node_of[v]], f);
     // Straight edges between flat patches are no noise, whatever is beside them.
     std::erase_if(nodes_, [&](const Node& node) {
@@ -107,7 +123,7 @@ class Leveller {
   }
 
   void add_facet(Node& node, std::uint32_t f) {
-    const TaggedFacet<Dim>& facet = input_.facets[f];
+    const TaggedFacet<Dim>& facet = parts_.facets[f];
     node.facets.push_back(f);
     for (const VertexId v : facet.corners)
       if (v != node.vertex &&
@@ -115,7 +131,7 @@ class Leveller {
         node.beside.push_back(v);
     const Patch<Dim>& patch = mesh_.patches[facet.patch];
     if (patch.smooth) {
-      const Vector<Dim> area = norm(normal_of<Dim>(mesh_, facet.corners)) * normal(f);
+      const Vector<Dim> area = norm(normal_of<Dim>(mesh_, facet.corners)) * parts_.direction(f);
       node.normal += (dot(area, node.normal) < 0 ? -1.0 : 1.0) * area;
       return;
     }
@@ -124,16 +140,10 @@ class Leveller {
     if (norm(across) > 1e-6) node.flat.push_back(unit(across));
   }
 
-  /// That it counts as having.
-  Vector<Dim> normal(std::uint32_t f) const {
-    if (!input_.normals.empty() && norm(input_.normals[f]) > 0) return input_.normals[f];
-    return unit(normal_of<Dim>(mesh_, outward_corners(mesh_, input_.facets[f])));
-  }
-
   // ---- Curves ----
 
   bool turns(const Vector<Dim>& before, const Vector<Dim>& after) const {
-    return !(dot(before, after) > input_.least_turn * norm(before) * norm(after));
+    return !(dot(before, after) > parts_.within.least_turn * norm(before) * norm(after));
   }
   /// Does the curve turn by much at a vertex?
   bool turns(VertexId v) const {
@@ -153,7 +163,7 @@ class Leveller {
   bool turns_towards(VertexId from, VertexId next) const {
     VertexId before = from;
     while (next != from && chains_.passes(next) &&
-           norm(at(next) - at(from)) < 2 * input_.tolerance) {
+           norm(at(next) - at(from)) < 2 * parts_.within.surface) {
       if (turns(next)) return true;
       before = std::exchange(next, chains_.after(next, before));
     }
@@ -162,7 +172,7 @@ class Leveller {
   /// The point where the curve from a vertex over the next one leaves the range of noise.
   Vector<Dim> ahead(VertexId from, VertexId next) const {
     constexpr int most_steps = 200;
-    const double reach = 2 * input_.tolerance;
+    const double reach = 2 * parts_.within.surface;
     VertexId before = from;
     for (int i = 0; i < most_steps && norm(at(next) - at(from)) < reach; ++i) {
       const VertexId after = chains_.after(next, before);
@@ -193,9 +203,9 @@ class Leveller {
     Vector<Dim> mean;
     for (const VertexId v : node.beside)
       mean += (1.0 / static_cast<double>(node.beside.size())) * (places_[v] - here);
-    Vector<Dim> away = here - origin + levelled(node) + 0.5 * along(mean);
-    away = limited(away, along(away), input_.tolerance / 4);
-    away = limited(away, away, input_.tolerance / 2);
+    Vector<Dim> away = here - origin + to_planes(node) + 0.5 * along(mean);
+    away = limited(away, along(away), parts_.within.surface / 4);
+    away = limited(away, away, parts_.within.surface / 2);
     for (const Vector<Dim>& across : node.flat) away -= dot(away, across) * across;
     return origin + away;
   }
@@ -207,23 +217,23 @@ class Leveller {
   }
 
   /// Towards the planes through the centres of the facets, by their normals.
-  Vector<Dim> levelled(const Node& node) const {
+  Vector<Dim> to_planes(const Node& node) const {
     Vector<Dim> sum;
     double weight = 0;
     for (const std::uint32_t f : node.facets) {
-      const auto& corners = input_.facets[f].corners;
+      const auto& corners = parts_.facets[f].corners;
       Vector<Dim> centre;
       for (const VertexId v : corners) centre += (1.0 / Dim) * places_[v];
       const double area = norm(normal_of<Dim>(mesh_, corners));
-      const Vector<Dim> across = normal(f);
+      const Vector<Dim> across = parts_.direction(f);
       sum += (area * dot(across, centre - places_[node.vertex])) * across;
       weight += area;
     }
     return weight > 0 ? (1 / weight) * sum : Vector<Dim>{};
   }
 
+  const BoundaryParts<Dim>& parts_;
   const Mesh<Dim>& mesh_;
-  const LevelledInput<Dim>& input_;
   Chains chains_;
   std::vector<Node> nodes_;
   std::vector<Vector<Dim>> places_;  // [vertex]
@@ -232,14 +242,11 @@ class Leveller {
 }  // namespace
 
 template <int Dim>
-std::vector<Vector<Dim>> levelled_places(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                         const LevelledInput<Dim>& input) {
-  return Leveller<Dim>(mesh, input).places(executor);
+void denoise(BoundaryParts<Dim>& parts, const std::vector<CurveEdge>& curve_edges) {
+  parts.places = Denoiser<Dim>(parts, curve_edges).places();
 }
 
-template std::vector<Vector<2>> levelled_places(const runtime::Executor&, const Mesh<2>&,
-                                                const LevelledInput<2>&);
-template std::vector<Vector<3>> levelled_places(const runtime::Executor&, const Mesh<3>&,
-                                                const LevelledInput<3>&);
+template void denoise(BoundaryParts<2>&, const std::vector<CurveEdge>&);
+template void denoise(BoundaryParts<3>&, const std::vector<CurveEdge>&);
 
 }  // namespace ductile::meshadapt
