@@ -79,8 +79,9 @@ Vector<Dim> Sheets<Dim, Corners>::direction_at(const Vector<Dim>& point,
   return direction_along<Dim, Corners>(curved.tangents(*weights));
 }
 
-/// The closest point of a sheet that is a function, if it is near the closest one of the model, and
-/// not beyond where the sheet ends: then that of this one.
+/// The closest point of the sheet's function to the point itself, if that is near the closest point
+/// of the model; otherwise, for instance beyond the end of the sheet, its closest point to the
+/// model's point. The model's point if there is no function, or it is unknown there.
 template <int Dim, std::size_t Corners>
 Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
                                            std::uint32_t sheet) const {
@@ -90,7 +91,8 @@ Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vecto
     const Vector<Dim> there = projection_of_[sheet](point);
     if (norm(there - model) <= near * tolerance_) return there;
   }
-  return projection_of_[sheet](model);
+  const Vector<Dim> there = projection_of_[sheet](model);
+  return is_known(there) ? there : model;
 }
 
 /// Looks nearby first, because it is likely there; reach and tolerance may be large.
@@ -112,6 +114,21 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
   return {};
 }
 
+/// The point of the sheet near the closest point of its flat parts.
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest_at(const Vector<Dim>& point, const Closest& closest) const
+    -> Nearest {
+  Nearest nearest{parts_[closest.part].sheet, 0, closest.point, shape_of_[closest.part].direction};
+  if (const auto weights = weights_at(point, closest)) {
+    const Curved& curved = curved_[origin_of_[closest.part].curved];
+    nearest.point = curved.at(*weights);
+    nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
+  }
+  nearest.point = on_sheet(point, nearest.point, nearest.sheet);
+  nearest.distance = norm(nearest.point - point);
+  return nearest;
+}
+
 /// The nearest of the parts for which is_wanted(part) holds. Looks nearby first.
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
@@ -125,18 +142,29 @@ auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
       if (is_wanted(part)) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);
-    if (!(best.distance <= within)) continue;
-    Nearest nearest{parts_[best.part].sheet, 0, best.point, shape_of_[best.part].direction};
-    if (const auto weights = weights_at(point, best)) {
-      const Curved& curved = curved_[origin_of_[best.part].curved];
-      nearest.point = curved.at(*weights);
-      nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
-    }
-    nearest.point = on_sheet(point, nearest.point, nearest.sheet);
-    nearest.distance = norm(nearest.point - point);
-    return nearest;
+    if (best.distance <= within) return nearest_at(point, best);
   }
   return {};
+}
+
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
+                                   std::span<const std::uint8_t> is_wanted) const
+    -> std::optional<Nearest> {
+  Closest best;
+  double square = best.distance;
+  tree_->visit_near(point, square, [&](std::size_t place) {
+    const std::uint32_t facet = tree_->order()[place];
+    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part) {
+      if (is_wanted[parts_[part].sheet] == 0) continue;
+      const Vector<Dim> there = closest_point(parts_[part].corner, point);
+      const double distance = norm(there - point);
+      if (distance < best.distance) best = {distance, there, part};
+    }
+    square = best.distance * best.distance;
+  });
+  if (!std::isfinite(best.distance)) return {};
+  return nearest_at(point, best);
 }
 
 template <int Dim, std::size_t Corners>
@@ -170,6 +198,8 @@ template Vector<2> Sheets<2, 2>::direction_at(const Vector<2>&, const Closest&) 
 template Vector<2> Sheets<2, 2>::on_sheet(const Vector<2>&, const Vector<2>&, std::uint32_t) const;
 template std::optional<Vector<2>> Sheets<2, 2>::closest(const Vector<2>&, std::uint32_t,
                                                         double) const;
+template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(
+    const Vector<2>&, std::span<const std::uint8_t>) const;
 template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector<2>&, double) const;
 template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector<2>&,
                                                                     const Vector<2>&,
@@ -194,6 +224,8 @@ template Vector<3> Sheets<3, 3>::on_model(const Vector<3>&, const Closest&) cons
 template Vector<3> Sheets<3, 3>::on_sheet(const Vector<3>&, const Vector<3>&, std::uint32_t) const;
 template std::optional<Vector<3>> Sheets<3, 3>::closest(const Vector<3>&, std::uint32_t,
                                                         double) const;
+template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(
+    const Vector<3>&, std::span<const std::uint8_t>) const;
 template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(const Vector<3>&, double) const;
 template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(const Vector<3>&,
                                                                     const Vector<3>&,

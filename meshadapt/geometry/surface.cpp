@@ -55,7 +55,8 @@ class SurfaceMaker {
           {points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true, {}});
       edge_pieces.push_back(model.edges[e]);
     }
-    const auto on_patches = projections_of_patches(mesh_, options_.functions, reach());
+    const auto on_patches =
+        projections_of_patches(mesh_, options_.functions, {reach(), options_.tolerance});
     expect_on(on_patches);
     return std::shared_ptr<const Surface<Dim>>(new Surface<Dim>{
         {facet_parts, options_.tolerance, model.facets, on_patches, options_.least_turn},
@@ -82,7 +83,7 @@ class SurfaceMaker {
     return longest + fitting * options_.tolerance;
   }
 
-  /// Are the vertices of the mesh on them?
+  /// Throws InputError unless the vertices of the mesh are on them, where they are known.
   void expect_on(const std::vector<Projection<Dim>>& on_patches) const {
     if (on_patches.empty()) return;
     for (const TaggedFacet<Dim>& facet : facets_) {
