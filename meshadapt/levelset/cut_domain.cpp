@@ -57,6 +57,8 @@ class DomainMaker {
     domain_.mesh = make_fixed_mesh<Dim>(executor_, any_);
     find_materials();
     find_listed_facets();
+    domain_.is_ridge.assign(any_.edges.size(), 0);
+    for (const std::uint32_t edge : any_.ridges) domain_.is_ridge[edge] = 1;
     if constexpr (Dim == 3) find_spokes();
     fix_vertices();
     return std::move(domain_);
@@ -129,8 +131,6 @@ class DomainMaker {
   void find_spokes() {
     const auto& edges = any_.edges;
     domain_.drops_edge.assign(edges.size(), 0);
-    domain_.is_ridge.assign(edges.size(), 0);
-    for (const std::uint32_t edge : any_.ridges) domain_.is_ridge[edge] = 1;
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
       domain_.drops_edge[i] = edges.reference[i] == options_.interface;
       if (domain_.drops_edge[i] != 0) continue;

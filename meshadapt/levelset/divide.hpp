@@ -41,7 +41,7 @@ class Divider {
     Pieces<Corners> pieces;
     pieces.corners[0] = cell;
     pieces.count = 1;
-    std::array<const Crossing*, Corners*(Corners - 1) / 2> cuts;
+    std::array<const Crossing*, 6> cuts;
     std::size_t cut_count = 0;
     for (std::size_t i = 0; i < Corners; ++i)
       for (std::size_t j = 0; j < i; ++j)
