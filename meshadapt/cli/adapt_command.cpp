@@ -43,9 +43,9 @@ using runtime::Executor;
 using Job = AdaptJob;
 
 constexpr std::array<Option, 41> own_options{{
-    {"-sol", "FILE",
+    {"-sol", "FIELD",
      "the metric or the sizes wanted, with -ls the level set (default: NAME.sol or .solb)"},
-    {"-met", "FILE", "the same as -sol; with -ls, the metric"},
+    {"-met", "FIELD", "the same as -sol; with -ls, the metric"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
      "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
