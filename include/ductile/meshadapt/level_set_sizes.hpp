@@ -22,7 +22,7 @@ using PointFunction = std::function<std::vector<double>(std::span<const double> 
 struct LevelSetSizesOptions {
   /// Largest distance between the zeros of the function and of its linear interpolant, a length.
   double tolerance = 0;
-  double smallest_size = 0;  ///< edges are not divided below this; 0: a tenth of `tolerance`
+  double smallest_size = 0;  ///< edges are not divided below this; 0: the tolerance
   int most_passes = 10;      ///< adaptations of the mesh, one after another
 };
 
