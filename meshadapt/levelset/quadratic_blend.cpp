@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "levelset/level_set_gradients.hpp"
 
 namespace ductile::meshadapt {
 
@@ -14,7 +14,7 @@ QuadraticBlend<Dim>::QuadraticBlend(const runtime::Executor& executor, FixedMesh
                                     std::vector<double> value_of)
     : mesh_(std::move(mesh)),
       value_of_(std::move(value_of)),
-      gradient_of_(recover_gradient<Dim>(executor, mesh_, value_of_)),
+      gradient_of_(level_set_gradients<Dim>(executor, mesh_, value_of_)),
       locator_(executor, mesh_) {
   set_starts(executor);
 }
