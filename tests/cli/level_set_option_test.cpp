@@ -220,6 +220,16 @@ TEST_P(LevelSetOption, TakesAMetricAndSizesByPlaces) {
   EXPECT_GT(facets_on(fine, 10, ball_).first, 2 * facets_on(plain, 10, ball_).first);
 }
 
+/// A level that is met nowhere gives one side, and a warning.
+TEST_P(LevelSetOption, AdaptsAMeshThatTheLevelDoesNotMeet) {
+  for (const auto& [level, reference] : {std::pair{"9", 3}, std::pair{"-9", 2}}) {
+    const AnyMesh found = run("-ls " + std::string(level) + " -sol phi.sol " + size());
+    EXPECT_TRUE(contains(warned_, "is met nowhere")) << warned_;
+    EXPECT_EQ(volume_by_reference(found).size(), 1U);
+    EXPECT_NEAR(volume_by_reference(found)[reference], 1, 1e-9);
+  }
+}
+
 TEST_P(LevelSetOption, RemovesSmallComponentsAndKeepsAVolume) {
   const Function two = [](const Point& p) {  // a bar, and a bubble of one vertex
     const double bar = std::abs(p[0] - 0.25) - 0.15;
@@ -262,7 +272,8 @@ TEST_P(LevelSetOption, SplitsMaterialsByTheTableOfMmg) {
   EXPECT_GT(facets_on(found, 77, ball_).first, 10U);
   EXPECT_TRUE(contains(said_, "references below: 11, 21 (")) << said_;
   folder_.write(file, "LSReferences 1\n1 11 12\n");
-  expect_refused("-ls -sol phi.sol " + size(), "2");
+  expect_refused("-ls -sol phi.sol " + size(),
+                 "has the reference 2, which is not in the table of materials");
 }
 
 /// Fields are on the mesh before the cut; their integrals stay.
