@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
-#include "core/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
@@ -62,15 +62,11 @@ class CutWriter {
     made_.vertex_origin = snapped_.origin_of;
     made_.vertex_origin.resize(before + added);
     parallel_for(executor_, before + added, [&](std::size_t v) {
-      Vector<Dim> place;
-      if (v < before) {
-        place = domain_.mesh.position_of[v];
-      } else {
+      if (v >= before) {
         const Crossing& edge = snapped_.crossings[v - before];
         made_.vertex_origin[v] = {edge.a, edge.b, edge.t};
-        const Vector<Dim> a = domain_.mesh.position_of[edge.a];
-        place = a + edge.t * (domain_.mesh.position_of[edge.b] - a);
       }
+      const Vector<Dim> place = divider_.place(domain_, static_cast<VertexId>(v));
       std::copy_n(place.x.begin(), Dim, &mesh.coordinates[Dim * v]);
     });
   }
@@ -146,24 +142,10 @@ class CutWriter {
     auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     (Dim == 2 ? made_.mesh.required_triangles : made_.mesh.required_tetrahedra) =
         required_pieces(elements, required, elements_array<Dim>(), element_name<Dim>());
-    expect_volumes(elements);
     measure(elements);
     find_interface(elements);
     elements_in<Dim>(made_.mesh) = std::move(elements.cells);
     made_.element_origin = std::move(elements.origin);
-  }
-
-  void expect_volumes(const Divided<Dim + 1>& elements) const {
-    const std::size_t bad = first_bad(executor_, elements.origin.size(), [&](std::size_t i) {
-      const Corners<Dim>& corners = elements.cells.vertices[i];
-      if (std::ranges::all_of(corners, [&](VertexId v) { return divider_.sign(v) != 0; }))
-        return false;
-      return orientation<Dim>(points(corners)) <= 0;
-    });
-    if (bad != no_index)
-      refuse(name_of(any_) + ": " +
-             entry(elements_array<Dim>(), element_name<Dim>(), elements.origin[bad]) +
-             " is too flat to be cut; remove or repair it");
   }
 
   std::array<Vector<Dim>, Dim + 1> points(const Corners<Dim>& corners) const {

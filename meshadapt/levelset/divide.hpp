@@ -57,6 +57,26 @@ class Divider {
   /// The sign of a vertex, also of a new one.
   int sign(VertexId vertex) const { return vertex < first_new_ ? sign_of_[vertex] : 0; }
 
+  /// Where a vertex is, also a new one.
+  template <int Dim>
+  Vector<Dim> place(const CutDomain<Dim>& domain, VertexId vertex) const {
+    const auto& position_of = domain.mesh.position_of;
+    if (vertex < first_new_) return position_of[vertex];
+    const Crossing& edge = crossings_[vertex - first_new_];
+    return position_of[edge.a] + edge.t * (position_of[edge.b] - position_of[edge.a]);
+  }
+
+  /// The crossing of an edge; null if it is not cut.
+  const Crossing* find(VertexId a, VertexId b) const {
+    if (sign_of_[a] * sign_of_[b] >= 0) return nullptr;
+    if (a > b) std::swap(a, b);
+    const auto at = std::lower_bound(crossings_.begin(), crossings_.end(), b,
+                                     [a](const Crossing& edge, VertexId other) {
+                                       return edge.a != a ? edge.a < a : edge.b < other;
+                                     });
+    return at != crossings_.end() && at->a == a && at->b == b ? &*at : nullptr;
+  }
+
  private:
   template <std::size_t Corners>
   void bisect(Pieces<Corners>& pieces, const Crossing& cut) const {
@@ -69,16 +89,6 @@ class Divider {
       piece[static_cast<std::size_t>(b)] = made;
       other[static_cast<std::size_t>(a)] = made;
     }
-  }
-
-  const Crossing* find(VertexId a, VertexId b) const {
-    if (sign_of_[a] * sign_of_[b] >= 0) return nullptr;
-    if (a > b) std::swap(a, b);
-    const auto at = std::lower_bound(crossings_.begin(), crossings_.end(), b,
-                                     [a](const Crossing& edge, VertexId other) {
-                                       return edge.a != a ? edge.a < a : edge.b < other;
-                                     });
-    return at != crossings_.end() && at->a == a && at->b == b ? &*at : nullptr;
   }
 
   std::span<const Crossing> crossings_;

@@ -5,11 +5,16 @@
 #include <utility>
 
 #include "core/determinant.hpp"
+#include "core/first_bad.hpp"
+#include "core/orientation.hpp"
 #include "core/quality.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "levelset/discs.hpp"
+#include "levelset/divide.hpp"
 #include "levelset/slides.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -19,9 +24,12 @@ namespace {
 
 /// A vertex moves by at most this fraction of an edge.
 constexpr double most_moved = 0.2;
-/// Elsewhere, zeros closer than this fraction to the ends of their edges are pushed away, or onto
-/// the end if they are closer than half of it.
+/// Where vertices do not move, zeros keep this fraction of the edge from its ends, or go onto the
+/// end if they are closer than half of it.
 constexpr double least_part = 0.08;
+/// The same at vertices that the surface must not go through, around which it bends within an
+/// element: there shapes matter more than where it is.
+constexpr double least_part_at_bends = 0.2;
 /// Moves do not make elements worse than this, or than half as good as they were.
 constexpr double poor = 0.15;
 
@@ -47,7 +55,11 @@ template <int Dim>
 class Snapping {
  public:
   Snapping(const Executor& executor, CutDomain<Dim>& domain, Snapped& snapped)
-      : executor_(executor), domain_(domain), snapped_(snapped), discs_(domain, snapped.sign_of) {}
+      : executor_(executor),
+        domain_(domain),
+        snapped_(snapped),
+        discs_(domain, snapped.sign_of),
+        is_refused_(snapped.sign_of.size()) {}
 
   void run() {
     std::vector<Candidate> candidates;
@@ -59,16 +71,30 @@ class Snapping {
     for (const Candidate& c : candidates)
       if (are_open(c)) move(c);
     for (const Candidate& c : candidates)
-      if (c.t < least_part / 2 && are_open(c) && discs_.at(c.near)) take(c.near);
-    std::erase_if(snapped_.crossings,
-                  [&](const Crossing& edge) { return sign(edge.a) == 0 || sign(edge.b) == 0; });
+      if (c.t < least_part / 2 && are_open(c) && is_disc(c.near)) take(c.near);
+    drop_closed();
     for (Crossing& edge : snapped_.crossings)
-      edge.t = std::clamp(edge.t, least_part, 1 - least_part);
+      edge.t = std::clamp(edge.t, least_part_at(edge.a), 1 - least_part_at(edge.b));
+    make_volumes_certain();
   }
 
  private:
   std::int8_t& sign(VertexId v) { return snapped_.sign_of[v]; }
   bool are_open(const Candidate& c) { return sign(c.near) != 0 && sign(c.far) != 0; }
+
+  bool is_disc(VertexId v) {
+    const bool is = discs_.at(v);
+    is_refused_[v] = is ? 0 : 1;
+    return is;
+  }
+  double least_part_at(VertexId v) const {
+    return is_refused_[v] != 0 ? least_part_at_bends : least_part;
+  }
+
+  void drop_closed() {
+    std::erase_if(snapped_.crossings,
+                  [&](const Crossing& edge) { return sign(edge.a) == 0 || sign(edge.b) == 0; });
+  }
 
   void take(VertexId v) {
     sign(v) = 0;
@@ -79,9 +105,9 @@ class Snapping {
     Vector<Dim>& place = domain_.mesh.position_of[c.near];
     const Vector<Dim> from = place;
     const Vector<Dim> to = from + c.t * (domain_.mesh.position_of[c.far] - from);
-    if (to != from && !may_slide(domain_, c.near, c.far)) return;
-    if (!discs_.at(c.near)) return;
+    if (!is_disc(c.near)) return;
     if (to == from) return take(c.near);
+    if (!may_slide(domain_, c.near, c.far)) return;
     place = to;
     if (!keeps_shapes(c.near)) {
       place = from;
@@ -105,10 +131,64 @@ class Snapping {
     return after > 0 && after > std::min(poor, 0.5 * before);
   }
 
+  // ---- Elements as flat as rounding errors ----
+
+  /// New vertices are not exactly on their edges. Where that would turn an element over, they are
+  /// put elsewhere on them, and in the end the surface goes through the ends of the edges.
+  void make_volumes_certain() {
+    constexpr std::array<double, 7> other_parts = {0.5, 0.25, 0.75, 0.375, 0.625, 0.3125, 0.6875};
+    runtime::UnsetVector<ElementId> bad = inverted();
+    for (std::size_t k = 0; k < other_parts.size() && !bad.empty(); ++k) {
+      for (const ElementId e : bad) each_cut(e, [&](Crossing& edge) { edge.t = other_parts[k]; });
+      bad = inverted();
+    }
+    while (!bad.empty()) {
+      for (const ElementId e : bad)
+        each_cut(e, [&](Crossing& edge) {
+          for (const VertexId v : {edge.a, edge.b})
+            if (sign(edge.a) != 0 && sign(edge.b) != 0 && discs_.at(v)) take(v);
+        });
+      const std::size_t before = snapped_.crossings.size();
+      drop_closed();
+      if (snapped_.crossings.size() == before) refuse_flat(bad[0]);
+      bad = inverted();
+    }
+  }
+
+  [[noreturn]] void refuse_flat(ElementId e) const {
+    refuse(name_of(domain_.any) + ": " + entry(elements_array<Dim>(), element_name<Dim>(), e) +
+           " is too flat to be cut; remove or repair it");
+  }
+
+  /// The elements that would be divided into some whose volumes are not positive.
+  runtime::UnsetVector<ElementId> inverted() const {
+    const Divider divider(snapped_.crossings, snapped_.sign_of);
+    return runtime::parallel_collect<ElementId>(
+        executor_, domain_.mesh.element_count(), [&](std::size_t e, auto&& append) {
+          const auto pieces = divider.divide(domain_.mesh.corners_of[e]);
+          if (pieces.count == 1) return;
+          for (const Corners<Dim>& piece : pieces) {
+            std::array<Vector<Dim>, Dim + 1> p;
+            for (std::size_t i = 0; i <= Dim; ++i) p[i] = divider.place(domain_, piece[i]);
+            if (orientation<Dim>(p) <= 0) return append(static_cast<ElementId>(e));
+          }
+        });
+  }
+
+  void each_cut(ElementId e, auto&& visit) {
+    const Divider divider(snapped_.crossings, snapped_.sign_of);
+    for (std::size_t k = 0; k < Simplex<Dim>::edge.size(); ++k) {
+      const auto [a, b] = ends_of_edge<Dim>(domain_.mesh.corners_of[e], k);
+      if (const Crossing* edge = divider.find(a, b))
+        visit(snapped_.crossings[static_cast<std::size_t>(edge - snapped_.crossings.data())]);
+    }
+  }
+
   const Executor& executor_;
   CutDomain<Dim>& domain_;
   Snapped& snapped_;
   Discs<Dim> discs_;
+  std::vector<std::uint8_t> is_refused_;  // [vertex] 1: the surface must not go through it
 };
 
 }  // namespace
