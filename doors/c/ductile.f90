@@ -166,6 +166,15 @@ module ductile
       real(c_double), value :: reach
       real(c_double), intent(out) :: closest(*)
     end function
+    ! options and points may be c_null_ptr.
+    integer(c_int) function ductile_signed_distance(mesh, options, reference_count, references, &
+        count, points, distances) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: mesh, options, points
+      integer(c_int64_t), value :: reference_count, count
+      integer(c_int32_t), intent(in) :: references(*)
+      real(c_double), intent(out) :: distances(*)
+    end function
     integer(c_int) function ductile_options_set_progress(options, progress, context) bind(C)
       import :: c_int, c_funptr, c_ptr
       type(c_ptr), value :: options, context

@@ -167,6 +167,14 @@ int ductile_options_set_geometry(ductile_options* options, const ductile_geometr
 int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
                              double reach, double* closest, double* normals, int32_t* references);
 
+/** The signed distance to the interface between the elements with one of `references`, where it is
+ * negative, and others, curved through its vertices: at `count` points[point * dimension + axis],
+ * or at the vertices of the mesh if `points` is NULL and `count` their number. Uses the options
+ * "hausd", which may be 0, "ar" and "threads"; `options` may be NULL. */
+int ductile_signed_distance(const ductile_mesh* mesh, const ductile_options* options,
+                            int64_t reference_count, const int32_t* references, int64_t count,
+                            const double* points, double* distances);
+
 /* ---- Sizes by places, without tensors. The finest of several wins ---- */
 
 /** Makes empty sizes, for meshes of dimension 2 or 3. */

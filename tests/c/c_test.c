@@ -489,6 +489,45 @@ static void test_geometry(void) {
   ductile_mesh_destroy(mesh);
 }
 
+/** A disk of radius 1/2 in one of radius 1. */
+static void test_signed_distance(void) {
+  double x[2 * 97] = {0}, distances[97];
+  int32_t triangles[3 * 160], references[160];
+  int64_t n = 0;
+  for (int i = 0; i < 96; ++i) {
+    const double angle = i % 32 * acos(-1) / 16, radius = (i / 32 + 1) / 4. + (i >= 64 ? .25 : 0);
+    x[2 * i + 2] = radius * cos(angle);
+    x[2 * i + 3] = radius * sin(angle);
+  }
+  for (int i = 0; i < 32; ++i) {
+    const int a = i + 1, b = (i + 1) % 32 + 1;
+    const int32_t corners[] = {0, a,      b,      a,      a + 32, b + 32, a,     b + 32,
+                               b, a + 32, a + 64, b + 64, a + 32, b + 64, b + 32};
+    for (int k = 0; k < 5; ++k, ++n) {
+      memcpy(triangles + 3 * n, corners + 3 * k, 3 * sizeof *corners);
+      references[n] = k < 3 ? 3 : 2;
+    }
+  }
+  ductile_mesh* mesh = NULL;
+  EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(mesh, 97, x, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_elements(mesh, n, triangles, references) == DUCTILE_OK);
+  const int32_t inside = 3, missing = 7;
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &inside, 97, NULL, distances) == DUCTILE_OK);
+  EXPECT(fabs(distances[0] + .5) < 1e-3 && distances[33] == 0 && fabs(distances[96] - .5) < 1e-3);
+  const double points[] = {.51, 0, 0, -.3, .4975, .0488};
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &inside, 3, points, distances) == DUCTILE_OK);
+  EXPECT(fabs(distances[0] - .01) < 1e-5 && fabs(distances[1] + .2) < 1e-4);
+  EXPECT(fabs(distances[2] - (hypot(.4975, .0488) - .5)) < 1e-5);
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &inside, 3, NULL, distances) ==
+         DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("count: expected the number of vertices, 97, because there are no points; found 3");
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &missing, 97, NULL, distances) ==
+         DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("mesh: no element has the reference 7, which is to be inside");
+  ductile_mesh_destroy(mesh);
+}
+
 int main(void) {
   EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
   test_meshes();
@@ -501,6 +540,7 @@ int main(void) {
   test_names();
   test_sizes();
   test_geometry();
+  test_signed_distance();
   printf("%d failures\n", failures);
   return failures != 0;
 }

@@ -491,6 +491,47 @@ class Mesh:
         rows = values.reshape(len(values), component_count(values.shape))
         return _ductile.interpolate_at(self._data, rows, places).reshape(-1, *values.shape[1:])
 
+    def signed_distance(self, inside: Union[int, str, Iterable[Union[int, str]]], at: Any = None, *,
+                        hausd: float = 0, ar: float = 45, threads: int = 0) -> np.ndarray:
+        """The distance to the interface between some regions and the others, negative inside.
+
+        The interface is curved through its vertices, so that a level set that is moved and cut step
+        by step does not shrink. The boundary of the mesh is not part of it.
+
+        Parameters
+        ----------
+        inside : int, str, or several
+            References or names of the cells where the distance is negative.
+        at : (n, d) array_like or Mesh, optional
+            Points, or a mesh, at the vertices of which distances are wanted; by default this mesh.
+            On its interface they are exactly 0.
+        hausd : float, optional
+            How far the curved interface may be from its facets; 0: a tenth of their edges.
+        ar : float, optional
+            Facets that turn by as many degrees meet at a ridge.
+        threads : int, optional
+
+        Returns
+        -------
+        (n,) ndarray
+
+        Examples
+        --------
+        >>> phi = mesh.signed_distance(inside=3)
+        """
+        keys = [inside] if isinstance(inside, (int, str, np.integer)) else list(inside)
+        refs = [ref for key in keys
+                for ref in (self._references_of(key, self.dim) if isinstance(key, str) else
+                            [whole(key, "inside", -2**31, 2**31 - 1)])]
+        places = at.points if isinstance(at, Mesh) else at
+        if places is not None:
+            places = finite(floats(places, "at"), "at")
+            if places.ndim != 2 or places.shape[1] != self.dim:
+                raise InputError(f"at: expected shape (n, {self.dim}), found {places.shape}")
+        with named(self.dim):
+            return _ductile.signed_distance(self._data, refs, number(hausd, "hausd"),
+                                            number(ar, "ar"), places, executor(threads))
+
     # ---- Measures and checks ----
 
     def quality(self, M: Optional[MetricLike] = None) -> np.ndarray:
