@@ -57,7 +57,9 @@ void cut_input(const Executor& executor, AdaptJob& job, AdaptInput& input,
   AnyMesh& mesh = input.file.mesh;
   meshadapt::CutOptions options = job.level_set->cut;
   if (const auto file = parameter_file(job.parameters, mesh))
-    options.materials = meshadapt::read_level_set_references(*file, &warnings);
+    for (const auto& [reference, split, minus, plus] :
+         meshadapt::read_level_set_references(*file, &warnings))
+      options.materials.push_back({reference, split, minus, plus});
   meshadapt::CutMesh made = meshadapt::cut(executor, mesh, level_set.values, options);
   warnings.insert(warnings.end(), made.report.warnings.begin(), made.report.warnings.end());
   const double tolerance = job.adapt.make.hausdorff_tolerance;

@@ -18,7 +18,7 @@ namespace {
 
 struct Parameters {
   std::vector<LocalSize> local_sizes;
-  std::vector<CutMaterial> materials;
+  std::vector<LevelSetReference> materials;
   Warnings base_references, level_set_references;  // that they are left out, if they are there
 };
 
@@ -91,7 +91,7 @@ class Reader {
   void read_materials() {
     const std::int64_t entries = count();
     for (std::int64_t i = 0; i < entries; ++i) {
-      CutMaterial material;
+      LevelSetReference material;
       material.reference = in_.integer<std::int32_t>("a reference");
       if (!materials_.insert(material.reference).second)
         in_.fail("expected each reference once, found " + std::to_string(material.reference) +
@@ -136,8 +136,8 @@ std::vector<LocalSize> read_local_sizes(const std::filesystem::path& path, Warni
   return std::move(parameters.local_sizes);
 }
 
-std::vector<CutMaterial> read_level_set_references(const std::filesystem::path& path,
-                                                   Warnings* warnings) {
+std::vector<LevelSetReference> read_level_set_references(const std::filesystem::path& path,
+                                                         Warnings* warnings) {
   const FileBytes bytes = read_bytes(path);
   Parameters parameters = Reader(bytes).read();
   append(warnings, parameters.base_references);

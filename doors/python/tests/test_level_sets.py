@@ -1,6 +1,10 @@
 """Meshes cut along level sets, and adapted to them."""
 
+import os
+import pathlib
 import pickle
+import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -173,3 +177,30 @@ def test_required_cells_are_not_cut(mesh):
     kept._data.require("cells", crossed[:1].astype(np.int32))
     with pytest.raises(ductile.InputError, match="required"):
         kept.cut(phi)
+
+
+def blocks(kind):
+    page = (pathlib.Path(__file__).parents[3] / "docs" / "level-sets.md").read_text()
+    return re.findall(rf"^```{kind}\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+
+
+def test_the_page_runs(tmp_path, monkeypatch):
+    """The code of docs/level-sets.md, and its commands where the program is built beside the module."""
+    monkeypatch.chdir(tmp_path)
+    sphere, loop = blocks("python")
+    names = {}
+    exec(sphere, names)
+    ball = names["out"]
+    assert volumes(ball)[ball.refs == 3].sum() == pytest.approx(4 / 3 * np.pi * 0.3**3, rel=0.04)
+    exec(loop, names)
+    disc = names["mesh"]
+    assert volumes(disc)[disc.refs == 3].sum() == pytest.approx(np.pi * 0.2**2, rel=0.006)
+    program = pathlib.Path(ductile.__file__).parents[2] / "meshadapt" / "cli"
+    if not (program / "ductile").exists():
+        return
+    (commands,) = blocks("sh")
+    monkeypatch.setenv("PATH", str(program), prepend=os.pathsep)
+    for command in commands.splitlines():
+        subprocess.run(command, shell=True, check=True)
+    again = ductile.read("out.mesh")
+    assert (again.cells == ball.cells).all()
