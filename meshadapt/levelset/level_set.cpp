@@ -70,8 +70,7 @@ class Cutter {
     parallel_for(executor_, function.size(),
                  [&](std::size_t v) { function[v] = values_[v] - level; });
     std::vector<double> value_of = function;  // no zeros, and without small components
-    for (double& value : value_of)
-      if (value == 0) value = std::numeric_limits<double>::min();
+    count_zeros(executor_, domain_, value_of);
     const auto removed =
         remove_small_components(executor_, domain_, value_of, options_.least_component);
     auto crossings = find_crossings<Dim>(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 
 #include "ductile/runtime/disjoint_sets.hpp"
@@ -45,25 +46,35 @@ double fraction_below(const CutDomain<Dim>& domain, std::size_t element,
   return fraction_below<Dim>(f);
 }
 
+/// Unites the vertices of one side that are in one split element.
+template <int Dim>
+runtime::DisjointSets parts_of_side(const Executor& executor, const CutDomain<Dim>& domain,
+                                    std::span<const double> value_of, bool plus) {
+  runtime::DisjointSets parts(executor, value_of.size());
+  runtime::parallel_for(executor, domain.mesh.element_count(), [&](std::size_t e) {
+    if (!domain.is_split(static_cast<ElementId>(e))) return;
+    VertexId first = none;
+    for (const VertexId v : domain.mesh.corners_of[e]) {
+      if ((value_of[v] < 0) == plus) continue;
+      if (first != none) parts.unite(first, v);
+      first = v;
+    }
+  });
+  return parts;
+}
+
 template <int Dim>
 RemovedComponents remove_from_side(const Executor& executor, const CutDomain<Dim>& domain,
                                    std::vector<double>& value_of, bool plus, double least_volume) {
-  runtime::DisjointSets parts(executor, value_of.size());
-  const auto is_here = [&](VertexId v) { return (value_of[v] < 0) != plus; };
+  auto parts = parts_of_side(executor, domain, value_of, plus);
   std::vector<double> volume_of(value_of.size());  // [lowest vertex of a part]
-  std::vector<VertexId> first_of(domain.mesh.element_count(), none);
-  runtime::parallel_for(executor, first_of.size(), [&](std::size_t e) {
-    if (!domain.is_split(static_cast<ElementId>(e))) return;
-    for (const VertexId v : domain.mesh.corners_of[e]) {
-      if (!is_here(v)) continue;
-      if (first_of[e] == none) first_of[e] = v;
-      parts.unite(first_of[e], v);
-    }
-  });
-  for (std::size_t e = 0; e < first_of.size(); ++e) {
-    if (first_of[e] == none) continue;
+  for (std::size_t e = 0; e < domain.mesh.element_count(); ++e) {
+    const auto& corners = domain.mesh.corners_of[e];
+    const auto v =
+        std::ranges::find_if(corners, [&](VertexId u) { return (value_of[u] < 0) != plus; });
+    if (v == corners.end() || !domain.is_split(static_cast<ElementId>(e))) continue;
     const double below = fraction_below(domain, e, value_of, 0);
-    volume_of[parts.lowest(first_of[e])] += domain.mesh.volume_of[e] * (plus ? 1 - below : below);
+    volume_of[parts.lowest(*v)] += domain.mesh.volume_of[e] * (plus ? 1 - below : below);
   }
   RemovedComponents removed;
   std::vector<VertexId> changing;
@@ -96,6 +107,32 @@ double volume_below(const Executor& executor, const CutDomain<Dim>& domain,
 }
 
 template <int Dim>
+void count_zeros(const Executor& executor, const CutDomain<Dim>& domain,
+                 std::vector<double>& value_of) {
+  constexpr double tiny = std::numeric_limits<double>::min();
+  constexpr std::uint32_t many_facets = 8;
+  if (std::ranges::find(value_of, 0.0) == value_of.end()) return;
+  std::vector<VertexId> zeros;
+  for (VertexId v = 0; v < value_of.size(); ++v)
+    if (value_of[v] == 0) zeros.push_back(v);
+  for (const VertexId v : zeros) value_of[v] = tiny;
+  auto parts = parts_of_side(executor, domain, value_of, true);
+  std::vector<std::uint32_t> facets(value_of.size()), has_volume(value_of.size());  // [lowest]
+  for (VertexId v = 0; v < value_of.size(); ++v)
+    if (value_of[v] > tiny) has_volume[parts.lowest(v)] = 1;
+  for (const VertexId v : zeros)
+    for (const ElementId e : domain.mesh.elements_of(v))
+      for (std::size_t i = 0; i <= Dim; ++i)
+        if (domain.is_split(e) && domain.is_border(e, i) &&
+            std::ranges::all_of(facet_of<Dim>(domain.mesh.corners_of[e], static_cast<int>(i)),
+                                [&](VertexId u) { return value_of[u] == tiny; }))
+          facets[parts.lowest(v)] += domain.mesh.corners_of[e][i] != v;
+  for (const VertexId v : zeros)
+    if (facets[parts.lowest(v)] >= Dim * many_facets && has_volume[parts.lowest(v)] == 0)
+      value_of[v] = -tiny;
+}
+
+template <int Dim>
 RemovedComponents remove_small_components(const Executor& executor, const CutDomain<Dim>& domain,
                                           std::vector<double>& value_of, double least_fraction) {
   if (!(least_fraction > 0)) return {};
@@ -108,6 +145,8 @@ RemovedComponents remove_small_components(const Executor& executor, const CutDom
 
 template double volume_below(const Executor&, const CutDomain<2>&, std::span<const double>, double);
 template double volume_below(const Executor&, const CutDomain<3>&, std::span<const double>, double);
+template void count_zeros(const Executor&, const CutDomain<2>&, std::vector<double>&);
+template void count_zeros(const Executor&, const CutDomain<3>&, std::vector<double>&);
 template RemovedComponents remove_small_components(const Executor&, const CutDomain<2>&,
                                                    std::vector<double>&, double);
 template RemovedComponents remove_small_components(const Executor&, const CutDomain<3>&,

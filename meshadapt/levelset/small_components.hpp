@@ -16,6 +16,12 @@ template <int Dim>
 double volume_below(const runtime::Executor& executor, const CutDomain<Dim>& domain,
                     std::span<const double> value_of, double level);
 
+/// Makes values of 0 positive. Where nothing but zeros is connected to them and they have many
+/// facets on the border of a material, the surface lies on the border: there they become negative.
+template <int Dim>
+void count_zeros(const runtime::Executor& executor, const CutDomain<Dim>& domain,
+                 std::vector<double>& value_of);
+
 struct RemovedComponents {
   std::size_t count = 0;
   double volume = 0;
@@ -32,6 +38,10 @@ extern template double volume_below(const runtime::Executor&, const CutDomain<2>
                                     std::span<const double>, double);
 extern template double volume_below(const runtime::Executor&, const CutDomain<3>&,
                                     std::span<const double>, double);
+extern template void count_zeros(const runtime::Executor&, const CutDomain<2>&,
+                                 std::vector<double>&);
+extern template void count_zeros(const runtime::Executor&, const CutDomain<3>&,
+                                 std::vector<double>&);
 extern template RemovedComponents remove_small_components(const runtime::Executor&,
                                                           const CutDomain<2>&, std::vector<double>&,
                                                           double);

@@ -22,7 +22,8 @@ using runtime::Executor;
 
 namespace {
 
-/// A vertex moves by at most this fraction of an edge.
+/// A vertex moves by at most this fraction of an edge, or by half of it if it is closer to the
+/// surface than least_part on another one, along which it must not move.
 constexpr double most_moved = 0.2;
 /// Where vertices do not move, zeros keep this fraction of the edge from its ends, or go onto the
 /// end if they are closer than half of it.
@@ -59,19 +60,20 @@ class Snapping {
         domain_(domain),
         snapped_(snapped),
         discs_(domain, snapped.sign_of),
-        is_refused_(snapped.sign_of.size()) {}
+        is_refused_(snapped.sign_of.size()),
+        is_close_(snapped.sign_of.size()) {}
 
   void run() {
     std::vector<Candidate> candidates;
     for (const Crossing& edge : snapped_.crossings) {
-      if (edge.t < most_moved) candidates.push_back({edge.t, edge.a, edge.b});
-      if (1 - edge.t < most_moved) candidates.push_back({1 - edge.t, edge.b, edge.a});
+      candidates.push_back(edge.t < 0.5 ? Candidate{edge.t, edge.a, edge.b}
+                                        : Candidate{1 - edge.t, edge.b, edge.a});
     }
     runtime::parallel_sort<Candidate>(executor_, candidates);
     for (const Candidate& c : candidates)
-      if (are_open(c)) move(c);
+      if (are_open(c) && (c.t < most_moved || is_close_[c.near] != 0)) move(c);
     for (const Candidate& c : candidates)
-      if (c.t < least_part / 2 && are_open(c) && is_disc(c.near)) take(c.near);
+      if (are_open(c) && c.t < least_part / 2 && is_disc(c.near)) take(c.near);
     drop_closed();
     for (Crossing& edge : snapped_.crossings)
       edge.t = std::clamp(edge.t, least_part_at(edge.a), 1 - least_part_at(edge.b));
@@ -107,6 +109,7 @@ class Snapping {
     const Vector<Dim> to = from + c.t * (domain_.mesh.position_of[c.far] - from);
     if (!is_disc(c.near)) return;
     if (to == from) return take(c.near);
+    if (c.t < least_part) is_close_[c.near] = 1;
     if (!may_slide(domain_, c.near, c.far)) return;
     place = to;
     if (!keeps_shapes(c.near)) {
@@ -189,6 +192,7 @@ class Snapping {
   Snapped& snapped_;
   Discs<Dim> discs_;
   std::vector<std::uint8_t> is_refused_;  // [vertex] 1: the surface must not go through it
+  std::vector<std::uint8_t> is_close_;    // [vertex] 1: see most_moved
 };
 
 }  // namespace
