@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "levelset/level_set_gradients.hpp"
 
 namespace ductile::meshadapt {
 
@@ -49,18 +49,17 @@ double zero_of(double from, double to, double bend) {
 }
 
 /// Moves zeros to where the quadratic along the edge is 0 that has the given values at its ends and
-/// the difference of the recovered slopes. Where slopes do not explain the values, as at a kink,
-/// zeros stay where they are.
+/// the difference of the slopes there, as in a LevelSetFunction.
 template <int Dim>
 void bend_zeros(const Executor& executor, const CutDomain<Dim>& domain,
                 std::span<const double> function_of, std::vector<Crossing>& crossings) {
-  constexpr double most_bend = 0.9, most_unexplained = 0.4;
+  constexpr double most_bend = 0.9;
   std::vector<VertexId> ends;
   ends.reserve(2 * crossings.size());
   for (const Crossing& edge : crossings) ends.insert(ends.end(), {edge.a, edge.b});
   runtime::parallel_sort<VertexId>(executor, ends);
   ends.resize(runtime::parallel_unique<VertexId>(executor, ends));
-  const auto gradient_of = recover_gradient_at<Dim>(executor, domain.mesh, function_of, ends);
+  const auto gradient_of = level_set_gradients<Dim>(executor, domain.mesh, function_of, ends);
   const auto gradient = [&](VertexId v) {
     return gradient_of[static_cast<std::size_t>(std::lower_bound(ends.begin(), ends.end(), v) -
                                                 ends.begin())];
@@ -70,8 +69,8 @@ void bend_zeros(const Executor& executor, const CutDomain<Dim>& domain,
     const Vector<Dim> along = domain.mesh.position_of[edge.b] - domain.mesh.position_of[edge.a];
     const double from = function_of[edge.a], to = function_of[edge.b];
     const double at_a = dot(gradient(edge.a), along), at_b = dot(gradient(edge.b), along);
-    const double bend = 0.5 * (at_a - at_b), unexplained = to - from - 0.5 * (at_a + at_b);
-    if (from * to >= 0 || !(std::abs(unexplained) <= most_unexplained * std::abs(bend))) return;
+    const double bend = 0.5 * (at_a - at_b);
+    if (from * to >= 0) return;
     const double most = most_bend * std::abs(to - from);
     edge.t = zero_of(from, to, std::clamp(bend, -most, most));
   });

@@ -128,7 +128,7 @@ class DistanceToInterface {
     constexpr double share = 0.1;
     MakeMeshOptions make;
     make.hausdorff_tolerance = tolerance_ =
-        options.tolerance > 0 ? options.tolerance : share * mean_edge(part);
+        options.tolerance != 0 ? options.tolerance : share * mean_edge(part);
     make.ridge_angle = options.ridge_angle;
     Neighbours<Dim> neighbours;
     std::vector<std::string> warnings;
