@@ -46,8 +46,8 @@ TYPED_TEST(SignedDistanceIn, IsThatOfTheBallThatTheFacetsApproximate) {
   const Executor executor({.threads = 2});
   const AnyMesh mesh = test::ball_in_box(dim, dim == 2 ? 16 : 12, radius);
   const auto distances = signed_distance(executor, mesh, of_ball);
-  // Facets are off by 0.008 in 2D, by 0.02 in 3D.
-  EXPECT_LT((error<dim>(mesh.coordinates, distances)), dim == 2 ? 2e-4 : 2e-3);
+  // Facets are off by 0.004 and more.
+  EXPECT_LT((error<dim>(mesh.coordinates, distances)), dim == 2 ? 1e-3 : 2e-3);
   for (const std::uint32_t v : test::interface_vertices(mesh)) EXPECT_EQ(distances[v], 0);
   EXPECT_EQ(static_cast<std::size_t>(std::count(distances.begin(), distances.end(), 0)),
             test::interface_vertices(mesh).size());
@@ -55,7 +55,7 @@ TYPED_TEST(SignedDistanceIn, IsThatOfTheBallThatTheFacetsApproximate) {
   std::vector<double> points(2000 * dim);
   for (double& x : points) x = test::uniform(random, -1.2, 1.2);  // some outside of the mesh
   EXPECT_LT((error<dim>(points, signed_distance(executor, mesh, of_ball, points))),
-            dim == 2 ? 2e-4 : 2e-3);
+            dim == 2 ? 1e-3 : 2e-3);
   const auto at_vertices = signed_distance(executor, mesh, of_ball, mesh.coordinates);
   for (std::size_t v = 0; v < distances.size(); ++v)
     EXPECT_NEAR(at_vertices[v], distances[v], 1e-12);
