@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "levelset/cut_output.hpp"
-#include "levelset/small_components.hpp"
+#include "levelset/crossings.hpp"
+#include "levelset/cut_writer.hpp"
+#include "levelset/sides.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/wording.hpp"
 
@@ -56,7 +58,9 @@ class Cutter {
         values_(values),
         options_(options),
         domain_(make_cut_domain<Dim>(executor, mesh, options)),
-        position_of_(domain_.mesh.position_of) {}
+        position_of_(domain_.mesh.position_of),
+        whole_volume_(
+            std::accumulate(domain_.mesh.volume_of.begin(), domain_.mesh.volume_of.end(), 0.0)) {}
 
   CutMesh run() {
     if (!options_.keep_volume) return at_level(options_.level);
@@ -69,31 +73,29 @@ class Cutter {
     std::vector<double> function(values_.size());
     parallel_for(executor_, function.size(),
                  [&](std::size_t v) { function[v] = values_[v] - level; });
-    std::vector<double> value_of = function;  // no zeros, and without small components
-    for (double& value : value_of)
-      if (value == 0) value = std::numeric_limits<double>::min();
+    std::vector<double> value_of = function;  // without zeros and small parts
     const auto removed =
-        remove_small_components(executor_, domain_, value_of, options_.least_component);
-    auto crossings = find_crossings<Dim>(
-        executor_, domain_, value_of,
-        options_.curved ? std::span<const double>(function) : std::span<const double>());
-    const bool is_met = !crossings.empty();
-    Snapped snapped = snap(executor_, domain_, value_of, std::move(crossings));
-    CutMesh made = write_cut(executor_, domain_, snapped, options_.interface);
-    fill(made, snapped, value_of);
+        choose_sides(executor_, domain_, value_of, options_.least_component * whole_volume_);
+    Snapped snapped{std::vector<std::int8_t>(value_of.size()),
+                    std::vector<VertexOrigin>(value_of.size()),
+                    find_crossings<Dim>(executor_, domain_, value_of)};
+    parallel_for(executor_, value_of.size(), [&](std::size_t v) {
+      const auto vertex = static_cast<VertexId>(v);
+      snapped.sign_of[v] = value_of[v] < 0 ? -1 : 1;
+      snapped.origin_of[v] = {vertex, vertex, 0};
+    });
+    if (options_.curved) bend_crossings<Dim>(executor_, domain_, function, snapped.crossings);
+    const bool is_met = !snapped.crossings.empty();
+    Snapping<Dim>(executor_, domain_, snapped).run();
+    CutMesh made = CutWriter<Dim>(executor_, domain_, snapped).write(options_.interface);
+    made.value.resize(made.mesh.vertex_count());
+    parallel_for(executor_, value_of.size(),
+                 [&](std::size_t v) { made.value[v] = snapped.sign_of[v] == 0 ? 0 : value_of[v]; });
     made.report.level = level;
     made.report.removed_components = removed.count;
     made.report.removed_volume = removed.volume;
     if (!is_met) made.report.warnings.push_back(never_met(level, removed.count));
     return made;
-  }
-
-  void fill(CutMesh& made, const Snapped& snapped, const std::vector<double>& value_of) {
-    made.value.assign(made.mesh.vertex_count(), 0);
-    parallel_for(executor_, value_of.size(),
-                 [&](std::size_t v) { made.value[v] = snapped.sign_of[v] == 0 ? 0 : value_of[v]; });
-    made.report.moved_vertices = snapped.moved;
-    made.report.taken_vertices = snapped.taken;
   }
 
   std::string never_met(double level, std::size_t removed) const {
@@ -112,7 +114,7 @@ class Cutter {
     constexpr int most_cuts = 4;
     constexpr double close = 1e-6;  // of the volume
     const double all =
-        volume_below<Dim>(executor_, domain_, values_, std::numeric_limits<double>::infinity());
+        volume_below(executor_, domain_, values_, std::numeric_limits<double>::infinity());
     if (!(wanted > 0 && wanted < all))
       throw InputError("keep_volume: expected one between 0 and that of the elements to split, " +
                        number(all) + ", found " + number(wanted));
@@ -136,7 +138,7 @@ class Cutter {
     double low = *least, high = *most;
     for (int i = 0; i < steps; ++i) {
       const double middle = low + (high - low) / 2;
-      (volume_below<Dim>(executor_, domain_, values_, middle) < volume ? low : high) = middle;
+      (volume_below(executor_, domain_, values_, middle) < volume ? low : high) = middle;
     }
     return low + (high - low) / 2;
   }
@@ -146,6 +148,7 @@ class Cutter {
   const CutOptions& options_;
   CutDomain<Dim> domain_;
   std::vector<Vector<Dim>> position_of_;  // [vertex], before vertices are moved
+  double whole_volume_;
 };
 
 /// Throws unless the field has a value for each vertex of the mesh before.
