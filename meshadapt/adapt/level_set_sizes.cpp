@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -171,36 +172,43 @@ class Resolution {
   std::vector<double> value_in_;  // [edge], in the middle
 };
 
-/// The given metric, made finer pass by pass.
+/// Makes a metric finer where the zero is not resolved; see Resolution::refine().
+struct Wanted {
+  const PointFunction& function;
+  const LevelSetSizesOptions& options;
+
+  bool refine(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
+    return mesh.dimension == 2 ? refine_in<2>(executor, mesh, metric)
+                               : refine_in<3>(executor, mesh, metric);
+  }
+
+ private:
+  template <int Dim>
+  bool refine_in(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
+    auto metric_of = tensors_of<Dim>(executor, metric);
+    if (!Resolution<Dim>(executor, mesh, function, options).refine(metric_of)) return false;
+    metric = symmetric_field(executor, metric_of, metric.name);
+    return true;
+  }
+};
+
+/// A metric that is fine enough for the input, made finer on each adapted mesh.
 class LevelSetSizes : public MetricSource {
  public:
-  LevelSetSizes(const AnyField& metric, const PointFunction& function,
-                const LevelSetSizesOptions& options)
-      : given_(metric), function_(function), options_(options) {}
+  LevelSetSizes(const AnyField& first, const Wanted& wanted) : first_(first), wanted_(wanted) {}
 
   const AnyField* next(const AdaptState& state) override {
-    is_resolved_ = state.mesh().dimension == 2 ? !refine<2>(state) : !refine<3>(state);
-    if (state.pass > 0 && (is_resolved_ || state.pass >= options_.most_passes)) return nullptr;
-    return &metric_;
+    if (state.pass == 0) return &first_;
+    metric_ = state.adapted().metric;
+    is_resolved_ = !wanted_.refine(state.executor, state.mesh(), metric_);
+    return is_resolved_ || state.pass >= wanted_.options.most_passes ? nullptr : &metric_;
   }
 
   bool is_resolved() const { return is_resolved_; }
 
  private:
-  template <int Dim>
-  bool refine(const AdaptState& state) {
-    const AnyField& before = state.pass == 0 ? given_ : state.adapted().metric;
-    expect_field_of(before, state.mesh());
-    auto metric_of = tensors_of<Dim>(state.executor, before);
-    const bool any =
-        Resolution<Dim>(state.executor, state.mesh(), function_, options_).refine(metric_of);
-    metric_ = symmetric_field(state.executor, metric_of, given_.name);
-    return any;
-  }
-
-  const AnyField& given_;
-  const PointFunction& function_;
-  const LevelSetSizesOptions& options_;
+  const AnyField& first_;
+  const Wanted& wanted_;
   AnyField metric_;
   bool is_resolved_ = false;
 };
@@ -217,9 +225,10 @@ AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
   if (!(sizes.smallest_size >= 0 && sizes.smallest_size <= largest_size))
     throw InputError("level set: expected a smallest size from 0 to 1e75, found " +
                      number(sizes.smallest_size));
-  const AnyField given =
-      metric_of(metric, mesh, SizeBounds{options.smallest_size, options.largest_size});
-  LevelSetSizes source(given, function, sizes);
+  AnyField finer = metric_of(metric, mesh, {options.smallest_size, options.largest_size});
+  const Wanted wanted{function, sizes};
+  if (!wanted.refine(executor, mesh, finer)) return {mesh, finer, {}};
+  LevelSetSizes source(finer, wanted);
   AdaptedMesh adapted = adapt(executor, mesh, source, options);
   if (!source.is_resolved())
     adapted.report.warnings.push_back(name_of(mesh) + ": the level set is not resolved after " +

@@ -151,6 +151,7 @@ template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
                                    std::span<const std::uint8_t> is_wanted) const
     -> std::optional<Nearest> {
+  constexpr double close = 4;  // tolerances
   Closest best;
   double square = best.distance;
   tree_->visit_near(point, square, [&](std::size_t place) {
@@ -164,7 +165,11 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
     square = best.distance * best.distance;
   });
   if (!std::isfinite(best.distance)) return {};
-  return nearest_at(point, best);
+  // The steps to the closest point of a curved part converge only for points close to it.
+  const double share = best.distance > close * tolerance_ ? close * tolerance_ / best.distance : 1;
+  Nearest nearest = nearest_at(best.point + share * (point - best.point), best);
+  nearest.distance = norm(nearest.point - point);
+  return nearest;
 }
 
 template <int Dim, std::size_t Corners>

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "levelset/divide.hpp"
+#include "levelset/level_set_gradients.hpp"
 
 namespace ductile::meshadapt {
 
@@ -55,17 +55,16 @@ inline double zero_of(double from, double to, double bend) {
 }
 
 /// Moves crossings to where the quadratic along the edge is 0 that has the function's values at the
-/// ends and the difference of the slopes recovered there. Where slopes do not explain the values,
-/// as at a kink, they stay where they are.
+/// ends and the difference of the slopes there, as in a LevelSetFunction.
 template <int Dim>
 void bend_crossings(const runtime::Executor& executor, const CutDomain<Dim>& domain,
                     std::span<const double> function_of, std::span<Crossing> crossings) {
-  constexpr double most_bend = 0.9, most_unexplained = 0.4;
+  constexpr double most_bend = 0.9;
   std::vector<VertexId> ends;
   for (const Crossing& edge : crossings) ends.insert(ends.end(), {edge.a, edge.b});
   runtime::parallel_sort<VertexId>(executor, ends);
   ends.resize(runtime::parallel_unique<VertexId>(executor, ends));
-  const auto gradient_of = recover_gradient_at<Dim>(executor, domain.mesh, function_of, ends);
+  const auto gradient_of = level_set_gradients<Dim>(executor, domain.mesh, function_of, ends);
   runtime::parallel_for(executor, crossings.size(), [&](std::size_t i) {
     auto& [a, b, t, square] = crossings[i];
     const Vector<Dim> along = domain.mesh.position_of[b] - domain.mesh.position_of[a];
@@ -74,11 +73,10 @@ void bend_crossings(const runtime::Executor& executor, const CutDomain<Dim>& dom
           gradient_of[static_cast<std::size_t>(std::ranges::lower_bound(ends, v) - ends.begin())],
           along);
     };
-    const double from = function_of[a], to = function_of[b], at_a = slope(a), at_b = slope(b);
-    const double bend = 0.5 * (at_a - at_b), unexplained = to - from - 0.5 * (at_a + at_b);
-    if (from * to >= 0 || !(std::abs(unexplained) <= most_unexplained * std::abs(bend))) return;
+    const double from = function_of[a], to = function_of[b];
+    if (from * to >= 0) return;
     const double most = most_bend * std::abs(to - from);
-    t = zero_of(from, to, std::clamp(bend, -most, most));
+    t = zero_of(from, to, std::clamp(0.5 * (slope(a) - slope(b)), -most, most));
   });
 }
 

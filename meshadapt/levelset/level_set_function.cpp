@@ -76,10 +76,12 @@ SurfaceFunction surface_of(std::shared_ptr<const QuadraticBlend<Dim>> blend, std
 LevelSetFunction::LevelSetFunction(const Executor& executor, const AnyMesh& mesh,
                                    std::span<const double> values, double level) {
   std::vector<double> value_of = minus(executor, mesh, values, level);
-  if (mesh.dimension == 2)
-    plane_ = blend_of<2>(executor, mesh, std::move(value_of));
-  else
-    space_ = blend_of<3>(executor, mesh, std::move(value_of));
+  runtime::with_team(executor, [&] {
+    if (mesh.dimension == 2)
+      plane_ = blend_of<2>(executor, mesh, std::move(value_of));
+    else
+      space_ = blend_of<3>(executor, mesh, std::move(value_of));
+  });
 }
 
 std::vector<double> LevelSetFunction::at(const Executor& executor,

@@ -60,29 +60,25 @@ std::optional<Vector<Dim>> cubic_gradient(const FixedMesh<Dim>& mesh,
 template <int Dim>
 std::vector<Vector<Dim>> level_set_gradients(const runtime::Executor& executor,
                                              const FixedMesh<Dim>& mesh,
-                                             std::span<const double> value_of) {
-  auto gradient_of = recover_gradient<Dim>(executor, mesh, value_of);
-  const auto is_crossed = [&](ElementId element) {
-    const auto& corners = mesh.corners_of[element];
-    const auto is_negative = [&](VertexId v) { return value_of[v] < 0; };
-    return std::any_of(corners.begin(), corners.end(), is_negative) &&
-           !std::all_of(corners.begin(), corners.end(), is_negative);
-  };
+                                             std::span<const double> value_of,
+                                             std::span<const VertexId> at) {
+  auto gradients = recover_gradient_at<Dim>(executor, mesh, value_of, at);
   runtime::PerThread<Surroundings<Dim>> buffer(executor);
-  runtime::parallel_for(executor, gradient_of.size(), [&](std::size_t v) {
-    const auto beside = mesh.elements_of(static_cast<VertexId>(v));
-    if (std::none_of(beside.begin(), beside.end(), is_crossed)) return;
+  runtime::parallel_for(executor, at.size(), [&](std::size_t i) {
+    if (mesh.elements_of(at[i]).empty()) return;
     Surroundings<Dim>& around = buffer.mine();
-    around.start(mesh, static_cast<VertexId>(v));
+    around.start(mesh, at[i]);
     around.grow(mesh);
-    if (const auto better = cubic_gradient<Dim>(mesh, value_of, around)) gradient_of[v] = *better;
+    if (const auto better = cubic_gradient<Dim>(mesh, value_of, around)) gradients[i] = *better;
   });
-  return gradient_of;
+  return gradients;
 }
 
 template std::vector<Vector<2>> level_set_gradients(const runtime::Executor&, const FixedMesh<2>&,
-                                                    std::span<const double>);
+                                                    std::span<const double>,
+                                                    std::span<const VertexId>);
 template std::vector<Vector<3>> level_set_gradients(const runtime::Executor&, const FixedMesh<3>&,
-                                                    std::span<const double>);
+                                                    std::span<const double>,
+                                                    std::span<const VertexId>);
 
 }  // namespace ductile::meshadapt

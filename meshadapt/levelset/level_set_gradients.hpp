@@ -1,7 +1,6 @@
 /// @file
-/// level_set_gradients: gradients of a function known at the vertices of a mesh, most accurate near
-/// its zero. There they are those of cubics fitted to two layers of vertices by least squares:
-/// quadratics make a ball of a few elements grow by a part in a thousand each time it is cut anew.
+/// level_set_gradients: gradients of a function near its zero, by cubics fitted to two layers of
+/// vertices: with quadratics a ball that is a few elements wide grows each time it is cut anew.
 #pragma once
 
 #include <span>
@@ -13,19 +12,22 @@
 
 namespace ductile::meshadapt {
 
-/// [vertex]. Cubics at the corners of elements in which the values have both signs, where the
-/// vertices around determine one; elsewhere as recover_gradient(). There is a value for each
-/// vertex. Thread safety: one caller; runs on the executor.
+/// [index in `at`]: at these vertices, by cubics, or as recover_gradient() where the vertices
+/// around determine none. There is a value for each vertex. Thread safety: one caller; runs on the
+/// executor.
 template <int Dim>
 std::vector<Vector<Dim>> level_set_gradients(const runtime::Executor& executor,
                                              const FixedMesh<Dim>& mesh,
-                                             std::span<const double> value_of);
+                                             std::span<const double> value_of,
+                                             std::span<const VertexId> at);
 
 extern template std::vector<Vector<2>> level_set_gradients(const runtime::Executor&,
                                                            const FixedMesh<2>&,
-                                                           std::span<const double>);
+                                                           std::span<const double>,
+                                                           std::span<const VertexId>);
 extern template std::vector<Vector<3>> level_set_gradients(const runtime::Executor&,
                                                            const FixedMesh<3>&,
-                                                           std::span<const double>);
+                                                           std::span<const double>,
+                                                           std::span<const VertexId>);
 
 }  // namespace ductile::meshadapt

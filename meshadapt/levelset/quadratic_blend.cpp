@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "levelset/level_set_gradients.hpp"
 
@@ -14,9 +15,23 @@ QuadraticBlend<Dim>::QuadraticBlend(const runtime::Executor& executor, FixedMesh
                                     std::vector<double> value_of)
     : mesh_(std::move(mesh)),
       value_of_(std::move(value_of)),
-      gradient_of_(level_set_gradients<Dim>(executor, mesh_, value_of_)),
+      gradient_of_(recover_gradient<Dim>(executor, mesh_, value_of_)),
       locator_(executor, mesh_) {
+  std::vector<VertexId> near_zero;
+  for (VertexId v = 0; v < mesh_.vertex_count(); ++v)
+    if (is_near_zero(v)) near_zero.push_back(v);
+  const auto better = level_set_gradients<Dim>(executor, mesh_, value_of_, near_zero);
+  for (std::size_t i = 0; i < near_zero.size(); ++i) gradient_of_[near_zero[i]] = better[i];
   set_starts(executor);
+}
+
+/// Is a value of the other sign next to it?
+template <int Dim>
+bool QuadraticBlend<Dim>::is_near_zero(VertexId vertex) const {
+  for (const ElementId e : mesh_.elements_of(vertex))
+    for (const VertexId other : mesh_.corners_of[e])
+      if ((value_of_[other] < 0) != (value_of_[vertex] < 0)) return true;
+  return false;
 }
 
 /// About as many cells as elements.

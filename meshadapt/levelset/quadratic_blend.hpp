@@ -38,6 +38,7 @@ class QuadraticBlend {
   std::optional<Vector<Dim>> closest(const Vector<Dim>& point, double within) const;
 
  private:
+  bool is_near_zero(VertexId vertex) const;
   void set_starts(const runtime::Executor& executor);
   ElementId start_near(const Vector<Dim>& point) const;
 

@@ -128,7 +128,7 @@ class DistanceToInterface {
     constexpr double share = 0.1;
     MakeMeshOptions make;
     make.hausdorff_tolerance = tolerance_ =
-        options.tolerance > 0 ? options.tolerance : share * mean_edge(part);
+        options.tolerance != 0 ? options.tolerance : share * mean_edge(part);
     make.ridge_angle = options.ridge_angle;
     Neighbours<Dim> neighbours;
     std::vector<std::string> warnings;
@@ -198,8 +198,10 @@ std::vector<double> distances(const Executor& executor, const AnyMesh& mesh,
 std::vector<double> signed_distance(const Executor& executor, const AnyMesh& mesh,
                                     const SignedDistanceOptions& options,
                                     std::span<const double> points) {
-  return mesh.dimension == 2 ? distances<2>(executor, mesh, options, points)
-                             : distances<3>(executor, mesh, options, points);
+  return runtime::with_team(executor, [&] {
+    return mesh.dimension == 2 ? distances<2>(executor, mesh, options, points)
+                               : distances<3>(executor, mesh, options, points);
+  });
 }
 
 }  // namespace ductile::meshadapt

@@ -46,8 +46,8 @@ TYPED_TEST(SignedDistanceIn, IsThatOfTheBallThatTheFacetsApproximate) {
   const Executor executor({.threads = 2});
   const AnyMesh mesh = test::ball_in_box(dim, dim == 2 ? 16 : 12, radius);
   const auto distances = signed_distance(executor, mesh, of_ball);
-  // Facets are off by 0.008 in 2D, by 0.02 in 3D.
-  EXPECT_LT((error<dim>(mesh.coordinates, distances)), dim == 2 ? 2e-4 : 2e-3);
+  // Facets are off by 0.004 and more.
+  EXPECT_LT((error<dim>(mesh.coordinates, distances)), dim == 2 ? 1e-3 : 2e-3);
   for (const std::uint32_t v : test::interface_vertices(mesh)) EXPECT_EQ(distances[v], 0);
   EXPECT_EQ(static_cast<std::size_t>(std::count(distances.begin(), distances.end(), 0)),
             test::interface_vertices(mesh).size());
@@ -55,7 +55,7 @@ TYPED_TEST(SignedDistanceIn, IsThatOfTheBallThatTheFacetsApproximate) {
   std::vector<double> points(2000 * dim);
   for (double& x : points) x = test::uniform(random, -1.2, 1.2);  // some outside of the mesh
   EXPECT_LT((error<dim>(points, signed_distance(executor, mesh, of_ball, points))),
-            dim == 2 ? 2e-4 : 2e-3);
+            dim == 2 ? 1e-3 : 2e-3);
   const auto at_vertices = signed_distance(executor, mesh, of_ball, mesh.coordinates);
   for (std::size_t v = 0; v < distances.size(); ++v)
     EXPECT_NEAR(at_vertices[v], distances[v], 1e-12);
@@ -64,13 +64,13 @@ TYPED_TEST(SignedDistanceIn, IsThatOfTheBallThatTheFacetsApproximate) {
 TYPED_TEST(SignedDistanceIn, HasItsSignByTheSideOfTheCurvedSurface) {
   constexpr int dim = TypeParam::value;
   const Executor executor({.threads = 2});
-  const AnyMesh mesh = test::ball_in_box(dim, dim == 2 ? 12 : 8, radius);
+  const AnyMesh mesh = test::ball_in_box(dim, 12, radius);
   test::Random random(4);
   std::vector<double> points;
   for (int i = 0; i < 1000; ++i) {  // between the facets and the ball, for the most part
     Vector<dim> out;
     for (int k = 0; k < dim; ++k) out[k] = test::uniform(random, -1, 1);
-    out *= (radius - (dim == 2 ? 0.001 : 0.004)) / norm(out);
+    out *= (radius - (dim == 2 ? 0.001 : 0.003)) / norm(out);
     points.insert(points.end(), out.x.begin(), out.x.end());
   }
   for (const double distance : signed_distance(executor, mesh, of_ball, points))
@@ -97,7 +97,8 @@ TYPED_TEST(SignedDistanceIn, IsExactForFlatInterfacesWithCorners) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     test::Grid grid = test::unit_grid(dim, dim == 2 ? 5 : 3);
-    grid.region = test::random_regions(seed, 3, test::chance(random, 0.3));
+    const bool grid_has_holes = test::chance(random, 0.3);
+    grid.region = test::random_regions(seed, 3, grid_has_holes);
     AnyMesh mesh = test::make_grid(grid);
     std::vector<Facet<dim>> interface;
     const auto& reference_of = elements_in<dim>(mesh).reference;
@@ -107,14 +108,15 @@ TYPED_TEST(SignedDistanceIn, IsExactForFlatInterfacesWithCorners) {
         interface.push_back(facet);
     if (interface.empty()) continue;
     const auto distances = signed_distance(executor, mesh, {.inside = {1}});
-    std::vector<double> sign_of(mesh.vertex_count());
     for (std::size_t e = 0; e < reference_of.size(); ++e)
-      for (const VertexId v : elements_in<dim>(mesh).vertices[e])
-        sign_of[v] = is_inside(static_cast<ElementId>(e)) ? -1 : 1;
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-      const auto at = position_in<dim>(mesh, v);
-      EXPECT_NEAR(distances[v], sign_of[v] * by_facets<dim>(mesh, at, interface), 1e-12);
-    }
+      for (const VertexId v : elements_in<dim>(mesh).vertices[e]) {
+        const auto at = position_in<dim>(mesh, v);
+        EXPECT_NEAR(std::abs(distances[v]), by_facets<dim>(mesh, at, interface), 1e-12);
+        // Both may touch at a vertex with holes around it.
+        if (!grid_has_holes && distances[v] != 0) {
+          EXPECT_EQ(distances[v] < 0, is_inside(static_cast<ElementId>(e)));
+        }
+      }
   }
 }
 
@@ -148,9 +150,9 @@ TYPED_TEST(SignedDistanceIn, SaysWhatIsWrong) {
   };
   const std::vector<double> few{0.5}, wrong(6, std::nan(""));
   EXPECT_EQ(message({.inside = {3, 8}}, {}),
-            "mesh: no element has the reference 8, which is to be inside");
+            "test: no element has the reference 8, which is to be inside");
   EXPECT_EQ(message({}, {}),
-            "mesh: expected facets between elements inside and others, found none");
+            "test: expected facets between elements inside and others, found none");
   EXPECT_EQ(message({.inside = {2, 3}}, {}), message({}, {}));
   EXPECT_NE(message(of_ball, few).find("coordinates for each"), std::string::npos);
   EXPECT_NE(message(of_ball, wrong).find("points[0]"), std::string::npos);

@@ -519,7 +519,9 @@ class Mesh:
         --------
         >>> phi = mesh.signed_distance(inside=3)
         """
-        keys = [inside] if isinstance(inside, (int, str, np.integer)) else list(inside)
+        keys = [inside] if isinstance(inside, (int, str, np.integer)) else inside
+        if not isinstance(keys, (list, tuple, set)) and np.ndim(keys) != 1:
+            raise InputError(f"inside: expected references or names of cells, found {shown(inside)}")
         refs = [ref for key in keys
                 for ref in (self._references_of(key, self.dim) if isinstance(key, str) else
                             [whole(key, "inside", -2**31, 2**31 - 1)])]
