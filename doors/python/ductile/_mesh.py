@@ -406,6 +406,54 @@ class Mesh:
         warn(out.level_set.report.warnings)
         return out
 
+    def refine_to(self, function: Callable[[np.ndarray], Any], tolerance: float,
+                  metric: Optional[MetricLike] = None, *, hmin: float = 0, threads: int = 0) -> Mesh:
+        """The mesh refined where a function is 0, so that `cut` finds its zero.
+
+        Parameters
+        ----------
+        function : callable
+            Values ``(n,)`` at points ``(n, d)``.
+        tolerance : float
+            Largest distance between the zeros of the function and of its linear interpolant. Films
+            and specks of that sign between vertices are resolved, too.
+        metric : float or array_like, optional
+            Sizes elsewhere, as in `remesh`; by default those that the mesh has.
+        hmin : float, optional
+            Edges are not divided below this; 0: `tolerance`.
+        threads : int, optional
+
+        Returns
+        -------
+        Mesh
+            With `metric`, `report` and `origin`, as `remesh` returns it.
+
+        Examples
+        --------
+        >>> mesh = mesh.refine_to(f, 0.001)
+        >>> out = mesh.cut(f(mesh.points)).remesh(0.1, hausd=0.001)
+        """
+        if not callable(function):
+            raise InputError(f"function: expected a function, found {shown(function)}")
+
+        def at(points: np.ndarray) -> np.ndarray:
+            values = finite(floats(function(points), "function"), "function")
+            if values.shape != (len(points),):
+                raise InputError(f"function: expected a value for each of {len(points)} points, found "
+                                 f"an array of shape {values.shape}")
+            return values
+
+        runs = executor(threads)
+        rows = None if metric is None else as_rows(self, metric, runs)
+        with named(self.dim):
+            result = _ductile.refine_to_level_set(
+                self._data, rows, at, number(tolerance, "tolerance"), number(hmin, "hmin"), runs)
+        out = Mesh._of(result[0])
+        out.metric, out.report = result[1:]
+        out._source = self._data
+        warn(out.report.warnings)
+        return out
+
     def _rows(self, data: _ductile.MeshData, metric: Optional[MetricLike], curved_sizes: bool,
               runs: _ductile.Executor) -> Any:
         """A metric as C++ takes it; that of the mesh before a cut is carried."""

@@ -179,6 +179,32 @@ def test_required_cells_are_not_cut(mesh):
         kept.cut(phi)
 
 
+def test_a_coarse_mesh_is_refined_where_a_function_is_zero(dim):
+    def specks(points):
+        return np.minimum(np.linalg.norm(points - 0.31, axis=1) - 0.06, np.abs(points[:, 0] - 0.77) - 0.02)
+
+    before = ductile.box((1,) * dim, (4,) * dim)
+    fine = before.refine_to(specks, 0.01, 0.25, hmin=0.015)
+    assert fine.check() == [] and len(fine.cells) > 2 * len(before.cells)
+    out = fine.cut(specks(fine.points))
+    ball = np.pi * 0.06**2 if dim == 2 else 4 / 3 * np.pi * 0.06**3
+    assert volumes(out)[out.refs == 3].sum() == pytest.approx(0.04 + ball, rel=0.1)
+    assert (fine.points == before.refine_to(specks, 0.01, 0.25, hmin=0.015, threads=1).points).all()
+
+
+@pytest.mark.parametrize("arguments, error, said", [
+    ((1, 0.1), ductile.InputError, "function: expected a function"),
+    ((lambda p: p[:, 0], 0), ductile.InputError, "tolerance"),
+    ((lambda p: p[:, 0], "x"), ductile.InputError, "tolerance: expected a number"),
+    ((lambda p: p, 0.1), ductile.InputError, "function: expected a value for each"),
+    ((lambda p: np.full(len(p), np.nan), 0.1), ductile.InputError, "function.*finite"),
+    ((lambda p: 1 // 0, 0.1), ZeroDivisionError, ""),
+])
+def test_wrong_calls_of_refine_to(mesh, arguments, error, said):
+    with pytest.raises(error, match=said):
+        mesh.refine_to(*arguments)
+
+
 def blocks(kind):
     page = (pathlib.Path(__file__).parents[3] / "docs" / "level-sets.md").read_text()
     return re.findall(rf"^```{kind}\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
@@ -187,11 +213,14 @@ def blocks(kind):
 def test_the_page_runs(tmp_path, monkeypatch):
     """The code of docs/level-sets.md, and its commands where the program is built beside the module."""
     monkeypatch.chdir(tmp_path)
-    sphere, loop = blocks("python")
+    sphere, film, loop = blocks("python")
     names = {}
     exec(sphere, names)
     ball = names["out"]
     assert volumes(ball)[ball.refs == 3].sum() == pytest.approx(4 / 3 * np.pi * 0.3**3, rel=0.04)
+    exec(film, names)
+    thin = names["out"]
+    assert volumes(thin)[thin.refs == 3].sum() == pytest.approx(0.02, rel=0.1)
     exec(loop, names)
     disc = names["mesh"]
     assert volumes(disc)[disc.refs == 3].sum() == pytest.approx(np.pi * 0.2**2, rel=0.006)
