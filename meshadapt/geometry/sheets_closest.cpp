@@ -151,7 +151,6 @@ template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
                                    std::span<const std::uint8_t> is_wanted) const
     -> std::optional<Nearest> {
-  constexpr double close = 4;  // tolerances
   Closest best;
   double square = best.distance;
   tree_->visit_near(point, square, [&](std::size_t place) {
@@ -165,9 +164,17 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
     square = best.distance * best.distance;
   });
   if (!std::isfinite(best.distance)) return {};
-  // The steps to the closest point of a curved part converge only for points close to it.
-  const double share = best.distance > close * tolerance_ ? close * tolerance_ / best.distance : 1;
-  Nearest nearest = nearest_at(best.point + share * (point - best.point), best);
+  // Steps to the closest point of a curved facet converge for points that are closer to it than its
+  // radius of curvature, which is longer than its edges: they start from a point on the way.
+  constexpr int times = 2;
+  const Points corner = facet_of(best.part);
+  const double length = norm(corner[1] - corner[0]);
+  Nearest nearest{parts_[best.part].sheet, best.distance, best.point, {}};
+  for (int time = 0; time < times; ++time) {
+    const Vector<Dim> from = nearest.point, away = point - from;
+    const double share = norm(away) > length ? length / norm(away) : 1;
+    nearest = nearest_at(from + share * away, best);
+  }
   nearest.distance = norm(nearest.point - point);
   return nearest;
 }
