@@ -136,6 +136,45 @@ def space():
     draw("space-after", mesh.remesh(size))
 
 
+def part(mesh, cells):
+    """Some of the cells, as a mesh."""
+    return ductile.Mesh(mesh.points, mesh.cells[cells], refs=mesh.refs[cells])
+
+
+def level_sets():
+    """A sphere, a gyroid, two materials, and a disc that is carried round in fifty steps."""
+    box = ductile.box((1, 1, 1), (12, 12, 12))
+    cut = box.cut(np.linalg.norm(box.points - 0.5, axis=1) - 0.3)
+    for name, mesh in (("cut", cut), ("adapted", cut.remesh(0.08, hausd=0.004, hgrad=1.3))):
+        half = mesh.points[mesh.cells].mean(axis=1)[:, 1] > 0.5
+        draw(f"level-set-{name}", part(mesh, half | (mesh.refs == 3)))
+    x, y, z = 2 * np.pi * box.points.T + 0.1
+    gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    mesh = box.cut(gyroid).remesh(0.07, hausd=0.01, hgrad=1.3)
+    draw("level-set-gyroid", part(mesh, mesh.refs == 3))
+
+    square, even = shaken(16, 0.2), ductile.box((1, 1), (16, 16))
+    points = np.array(square.points)
+    points[even.points[:, 0] == 0.5, 0] = 0.5
+    left = even.points[even.cells].mean(axis=1)[:, 0] < 0.5
+    square = square.replace(points=points, refs=np.where(left, 1, 2))
+    phi = np.linalg.norm(square.points - 0.5, axis=1) - 0.3
+    mesh = square.cut(phi, materials={1: (11, 12), 2: (21, 22)})
+    draw("level-set-materials", mesh.remesh(0.06, hausd=0.001, hgrad=1.3))
+
+    mesh = shaken(24, 0.2)
+    mesh = mesh.cut(np.linalg.norm(mesh.points - [0.5, 0.7], axis=1) - 0.2).remesh(
+        1 / 24, hausd=0.001, hgrad=1.3)
+    draw("level-set-first", mesh)
+    c, s = np.cos(2 * np.pi / 50), np.sin(2 * np.pi / 50)
+    for _ in range(50):
+        before = (mesh.points - 0.5) @ np.array([[c, -s], [s, c]]) + 0.5
+        mesh = mesh.cut(mesh.signed_distance(3, before)).remesh(1 / 24, hausd=0.001, hgrad=1.3)
+    draw("level-set-last", mesh)
+    corner = mesh.points[mesh.cells[mesh.refs == 3]]
+    print(np.linalg.det(corner[:, 1:] - corner[:, :1]).sum() / 2 / (np.pi * 0.2**2))
+
+
 if __name__ == "__main__":
-    for idea in (kernels, solution, transfer, places, gradation, regions, required, curved, bracket, space):
+    for idea in (kernels, solution, transfer, places, gradation, regions, required, curved, bracket, space, level_sets):
         idea()

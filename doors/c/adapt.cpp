@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,7 +15,7 @@
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/sizes.hpp"
-#include "handles.hpp"
+#include "level_set.hpp"
 
 namespace ductile::c {
 
@@ -38,12 +37,16 @@ Type type_of(int components, int dimension) {
                    std::to_string(components));
 }
 
-AnyField metric_of(const AnyMesh& mesh, int components, const double* values,
+AnyField metric_of(const ductile_mesh& handle, int components, const double* values,
                    const ductile_options& options) {
+  const AnyMesh& mesh = handle.mesh;
   if (values == nullptr && options.adapt.curved_sizes)
     return meshadapt::coarsest_metric(mesh, options.adapt.largest_size);
-  if (values == nullptr)
-    return meshadapt::default_metric(runtime::Executor(options.executor), mesh);
+  if (values == nullptr) {
+    const runtime::Executor executor(options.executor);
+    return handle.cut ? metric_before(executor, *handle.cut)
+                      : meshadapt::default_metric(executor, mesh);
+  }
   const Type type = type_of(components, mesh.dimension);
   const std::size_t count = mesh.vertex_count() * static_cast<std::size_t>(components);
   const AnyField given{
@@ -75,13 +78,6 @@ meshadapt::SolutionMetricOptions goal_of(const ductile_options& options) {
           .gradation = options.adapt.gradation,
           .recovery = options.projection ? meshadapt::Recovery::double_projection
                                          : meshadapt::Recovery::least_squares};
-}
-
-/// Throws unless entities can be counted by the C library's signed indices.
-void expect_signed(const AnyMesh& mesh) {
-  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
-  if (mesh.vertex_count() > most || mesh.triangles.size() > most || mesh.tetrahedra.size() > most)
-    throw meshadapt::Error("the adapted mesh has more entities than 31 bits can count");
 }
 
 ductile_mesh* handle_of(meshadapt::AdaptedMesh&& result) {
@@ -136,9 +132,10 @@ int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric
     c::expect_given(adapted, "adapted");
     const ductile_options defaults;
     const ductile_options& used = options == nullptr ? defaults : *options;
-    const meshadapt::AnyField wanted = c::metric_of(mesh->mesh, components, metric, used);
+    const meshadapt::AnyField wanted = c::metric_of(*mesh, components, metric, used);
+    const meshadapt::AdaptOptions adapt = c::on_surface(*mesh, used);
     *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
-      return meshadapt::adapt(executor, mesh->mesh, wanted, used.adapt);
+      return meshadapt::adapt(executor, mesh->mesh, wanted, adapt);
     });
   });
 }
@@ -152,8 +149,9 @@ int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
     c::expect_dimension_of(*sizes, *mesh);
     const ductile_options defaults;
     const ductile_options& used = options == nullptr ? defaults : *options;
+    const meshadapt::AdaptOptions adapt = c::on_surface(*mesh, used);
     *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
-      return meshadapt::adapt_to_sizes(executor, mesh->mesh, sizes->sizes, used.adapt);
+      return meshadapt::adapt_to_sizes(executor, mesh->mesh, sizes->sizes, adapt);
     });
   });
 }
@@ -177,7 +175,8 @@ int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* v
     c::expect_given(adapted, "adapted");
     c::expect_given(name, "name");
     c::expect_given(value, "value");
-    *value = c::figure(adapted->report, name);
+    *value = adapted->cut ? c::cut_figure(adapted->cut->made.report, name)
+                          : c::figure(adapted->report, name);
   });
 }
 

@@ -166,6 +166,33 @@ module ductile
       real(c_double), value :: reach
       real(c_double), intent(out) :: closest(*)
     end function
+    ! options and points may be c_null_ptr.
+    integer(c_int) function ductile_signed_distance(mesh, options, reference_count, references, &
+        count, points, distances) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: mesh, options, points
+      integer(c_int64_t), value :: reference_count, count
+      integer(c_int32_t), intent(in) :: references(*)
+      real(c_double), intent(out) :: distances(*)
+    end function
+    integer(c_int) function ductile_cut(mesh, values, options, cut) bind(C)
+      import :: c_int, c_double, c_ptr
+      type(c_ptr), value :: mesh, options
+      real(c_double), intent(in) :: values(*)
+      type(c_ptr), intent(out) :: cut
+    end function
+    integer(c_int) function ductile_options_set_material(options, reference, split, minus, plus) &
+        bind(C)
+      import :: c_int, c_int32_t, c_ptr
+      type(c_ptr), value :: options
+      integer(c_int32_t), value :: reference, minus, plus
+      integer(c_int), value :: split
+    end function
+    ! Each array may be c_null_ptr.
+    integer(c_int) function ductile_cut_origins(cut, vertices, weights, elements) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: cut, vertices, weights, elements
+    end function
     integer(c_int) function ductile_options_set_progress(options, progress, context) bind(C)
       import :: c_int, c_funptr, c_ptr
       type(c_ptr), value :: options, context

@@ -87,9 +87,9 @@ const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t refere
 const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
                                  int32_t* reference);
 
-/** Joins vertices at most `distance` apart, and facets that become the same; the first of each stays,
- * with its reference. `kept` gets the indices before of the vertices that stay, and has room for
- * all vertices; NULL if not wanted. A mesh from an adaptation loses its metric and report. */
+/** Joins vertices at most `distance` apart, and facets that become the same; the first of each
+ * stays, with its reference. `kept` gets the indices before of the vertices that stay, and has room
+ * for all vertices; NULL if not wanted. A mesh from an adaptation loses its metric and report. */
 int ductile_mesh_join_vertices(ductile_mesh* mesh, double distance, int32_t* kept);
 
 /** Reads a file of any format that `ductile help` lists, detected by content. */
@@ -126,7 +126,8 @@ int ductile_options_create(ductile_options** options);
 void ductile_options_destroy(ductile_options* options);
 
 /** Sets an option by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
- * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm"; "projection",
+ * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm", those of
+ * ductile_cut(); "projection",
  * "nomove", "noswap", "noinsert", "nosurf", "A", "thorough" and "racing", which are 0 or 1. */
 int ductile_options_set(ductile_options* options, const char* name, double value);
 
@@ -166,6 +167,38 @@ int ductile_options_set_geometry(ductile_options* options, const ductile_geometr
  * same of closest and normals. NaN and 0 where there is none. */
 int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
                              double reach, double* closest, double* normals, int32_t* references);
+
+/** The signed distance to the interface between the elements with one of `references`, where it is
+ * negative, and others, curved through its vertices: at `count` points[point * dimension + axis],
+ * or at the vertices of the mesh if `points` is NULL and `count` their number. Uses the options
+ * "hausd", which may be 0, "ar" and "threads"; `options` may be NULL. */
+int ductile_signed_distance(const ductile_mesh* mesh, const ductile_options* options,
+                            int64_t reference_count, const int32_t* references, int64_t count,
+                            const double* points, double* distances);
+
+/* ---- Level sets: a mesh is cut where a function is the value of the option "ls" ---- */
+
+/** Cuts a mesh: the level set becomes facets. values[vertex]. The options are "ls", 0; "minus", 3,
+ * and "plus", 2, the references of elements with lower and higher values; "isoref", 10, that of the
+ * facets between them; "rmc", 0: parts of either side with less than this fraction of the volume
+ * become part of the other; "keep_volume", 0: not 0, changes "ls" so that the elements of lower
+ * values have this volume; "threads". `options` may be NULL. The vertices of the mesh before come
+ * first. Adapted with "hausd" and without a geometry, the interface gets onto the curved surface of
+ * the function; without a metric, the sizes are those of the mesh before. ductile_mesh_report()
+ * knows "level", "volume_below", "cut_elements", "moved_vertices" and "removed_components". */
+int ductile_cut(const ductile_mesh* mesh, const double* values, const ductile_options* options,
+                ductile_mesh** cut);
+
+/** What becomes of the elements with a reference in ductile_cut(): with `split` 1 they get the
+ * references `minus` and `plus`, with 0 they keep theirs. Then all references need an entry. */
+int ductile_options_set_material(ductile_options* options, int32_t reference, int split,
+                                 int32_t minus, int32_t plus);
+
+/** Where a cut mesh comes from: each vertex lies at (1 - weight) a + weight b, with vertices[vertex
+ * * 2] = a and the next b of the mesh before, and weights[vertex]; elements[element] is the one
+ * that it is a part of. NULL for arrays that are not wanted. */
+int ductile_cut_origins(const ductile_mesh* cut, int32_t* vertices, double* weights,
+                        int32_t* elements);
 
 /* ---- Sizes by places, without tensors. The finest of several wins ---- */
 
@@ -207,8 +240,8 @@ int ductile_sizes_at(const ductile_sizes* sizes, const ductile_mesh* mesh, doubl
 /** Computes the metric, in the order of ductile_mesh_metric(), in which linear interpolation of a
  * solution has the smallest error for about "elements" elements, an option that must be set, in the
  * norm L^"norm" (2 by default); within "hmin", "hmax" and "hgrad". Second derivatives
- * are those of fitted quadratics, or with "projection" of double projection. values[vertex * components +
- * component]: the metric suits all components. */
+ * are those of fitted quadratics, or with "projection" of double projection. values[vertex *
+ * components + component]: the metric suits all components. */
 int ductile_solution_metric(const ductile_mesh* mesh, int components, const double* values,
                             const ductile_options* options, double* metric);
 

@@ -1,5 +1,6 @@
 /// @file
-/// Curved boundaries for ductile.h: a geometry, and surfaces given by functions.
+/// Curved boundaries for ductile.h: a geometry, surfaces given by functions, and distances to
+/// interfaces.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,10 +8,12 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ductile/meshadapt/geometry.hpp"
+#include "ductile/meshadapt/signed_distance.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "handles.hpp"
 
@@ -125,6 +128,34 @@ int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, co
     const runtime::Executor executor(geometry->executor);
     runtime::parallel_for(executor, static_cast<std::size_t>(count),
                           [&](std::size_t i) { all.write(i, points); });
+  });
+}
+
+int ductile_signed_distance(const ductile_mesh* mesh, const ductile_options* options,
+                            int64_t reference_count, const int32_t* references, int64_t count,
+                            const double* points, double* distances) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_array(references, reference_count, "references");
+    c::expect_array(distances, count, "distances");
+    const meshadapt::AnyMesh& any = mesh->mesh;
+    if (points == nullptr && count != static_cast<int64_t>(any.vertex_count()))
+      throw meshadapt::InputError("count: expected the number of vertices, " +
+                                  std::to_string(any.vertex_count()) +
+                                  ", because there are no "
+                                  "points; found " +
+                                  std::to_string(count));
+    const ductile_options defaults{};
+    const ductile_options& given = options != nullptr ? *options : defaults;
+    const auto values = static_cast<std::size_t>(count * any.dimension);
+    const std::span<const double> at(points, points != nullptr ? values : 0);
+    const auto found =
+        meshadapt::signed_distance(runtime::Executor(given.executor), any,
+                                   {.inside = {references, references + reference_count},
+                                    .tolerance = given.adapt.make.hausdorff_tolerance,
+                                    .ridge_angle = given.adapt.make.ridge_angle},
+                                   at);
+    std::copy(found.begin(), found.end(), distances);
   });
 }
 

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <exception>
+#include <limits>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -11,17 +13,24 @@
 #include "ductile.h"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/level_set.hpp"
 #include "ductile/meshadapt/sizes.hpp"
+
+namespace ductile::c {
+struct Cut;  // level_set.hpp
+}
 
 /// A mesh. Metric and report are empty unless it is an adapted one.
 struct ductile_mesh {
   ductile::meshadapt::AnyMesh mesh;
   ductile::meshadapt::AnyField metric;
   ductile::meshadapt::AdaptReport report;
+  std::shared_ptr<const ductile::c::Cut> cut = nullptr;  // of a mesh from ductile_cut()
 };
 
 struct ductile_options {
   ductile::meshadapt::AdaptOptions adapt;
+  ductile::meshadapt::CutOptions cut;
   ductile::runtime::ExecutorOptions executor;
   double elements = 0, norm = 2;  // goal of the metric of a solution
   bool projection = false;        // recovers second derivatives by double projection
@@ -92,6 +101,13 @@ inline int dimension_of(int kind, int dimension) {
   throw meshadapt::InputError("kind: expected DUCTILE_VERTICES, " +
                               std::string(dimension == 3 ? "DUCTILE_RIDGES, " : "") +
                               "DUCTILE_FACETS or DUCTILE_ELEMENTS, found " + std::to_string(kind));
+}
+
+/// Throws unless entities can be counted by the C library's signed indices.
+inline void expect_signed(const meshadapt::AnyMesh& mesh) {
+  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
+  if (mesh.vertex_count() > most || mesh.triangles.size() > most || mesh.tetrahedra.size() > most)
+    throw meshadapt::Error("the new mesh has more entities than 31 bits can count");
 }
 
 /// Throws InputError unless the sizes are for meshes of the mesh's dimension.

@@ -162,11 +162,13 @@ void keep_error(const char* text) noexcept {
 }
 
 void keep_wrong_input(const char* text) noexcept {
-  constexpr std::array<std::array<std::string_view, 2>, 5> names{
+  constexpr std::array<std::array<std::string_view, 2>, 7> names{
       {{"gradation:", "option hgrad:"},
        {"required_gradation:", "option hgradreq:"},
        {"hausdorff_tolerance:", "option hausd:"},
        {"ridge_angle:", "option ar:"},
+       {"level:", "option ls:"},
+       {"least_component:", "option rmc:"},
        {"bounds on sizes:", "hmin and hmax:"}}};
   keep_error(text);
   try {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,10 @@ int whole(const std::string& name, double value, int low, int high) {
   return static_cast<int>(value);
 }
 
+int reference(const std::string& name, double value) {
+  return whole(name, value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+}
+
 bool flag(const std::string& name, double value) { return whole(name, value, 0, 1) == 1; }
 
 std::size_t megabytes(const std::string& name, double value) {
@@ -41,7 +46,7 @@ struct Named {
 using Options = ductile_options;
 using Text = std::string;
 
-constexpr std::array<Named, 19> all_options{{
+constexpr std::array<Named, 25> all_options{{
     {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
@@ -63,6 +68,13 @@ constexpr std::array<Named, 19> all_options{{
     {"nosurf",
      [](Options& o, const Text& n, double x) { o.adapt.make.lock_boundary = flag(n, x); }},
     {"thorough", [](Options& o, const Text& n, double x) { o.adapt.thorough = flag(n, x); }},
+    {"ls", [](Options& o, const Text&, double x) { o.cut.level = x; }},
+    {"rmc", [](Options& o, const Text&, double x) { o.cut.least_component = x; }},
+    {"isoref", [](Options& o, const Text& n, double x) { o.cut.interface = reference(n, x); }},
+    {"minus", [](Options& o, const Text& n, double x) { o.cut.minus = reference(n, x); }},
+    {"plus", [](Options& o, const Text& n, double x) { o.cut.plus = reference(n, x); }},
+    {"keep_volume", [](Options& o, const Text&,
+                       double x) { o.cut.keep_volume = x == 0 ? std::nullopt : std::optional(x); }},
     {"racing", [](Options& o, const Text& n, double x) { o.executor.deterministic = !flag(n, x); }},
 }};
 

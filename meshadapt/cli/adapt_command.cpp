@@ -42,9 +42,10 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 36> own_options{{
-    {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
-     "-met"},
+constexpr std::array<Option, 41> own_options{{
+    {"-sol", "FIELD",
+     "the metric or the sizes wanted, with -ls the level set (default: NAME.sol or .solb)"},
+    {"-met", "FIELD", "the same as -sol; with -ls, the metric"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
      "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
@@ -62,7 +63,8 @@ constexpr std::array<Option, 36> own_options{{
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
     {"-hgradreq", "X",
      "takes sizes from what is required, to grow and fall by X at most (default: as asked)"},
-    {"-f", "FILE", "bounds on sizes by reference, a .mmg2d or .mmg3d (default: NAME's)"},
+    {"-f", "FILE",
+     "bounds on sizes by reference, materials of -ls, a .mmg2d or .mmg3d (default: NAME's)"},
     {"-nomove", "", "moves no vertex"},
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
@@ -74,6 +76,10 @@ constexpr std::array<Option, 36> own_options{{
      "with -hausd: sizes from how boundaries are curved, up to -hmax, growing by -hgrad (1.3)"},
     {"-ar", "DEG",
      "with -hausd, edges that turn by DEG degrees are ridges, which stay (default: 45)"},
+    {"-ls", "[V]", "cuts the mesh first where -sol, a file or a field of MESH, is V (0)"},
+    {"-rmc", "[X]", "with -ls, removes components with less than X of the volume (1e-5)"},
+    {"-isoref", "N", "with -ls, facets where it is V get this reference (10)"},
+    {"--keep-volume", "X", "with -ls, changes V so that the part below has this volume"},
     {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
     {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
@@ -128,7 +134,9 @@ void set_output(Job& job, const Arguments& arguments, const std::optional<fs::pa
 void set_sizes(Job& job, const Arguments& arguments) {
   job.size = size_option(arguments, "-hsiz");
   job.places = SizeOptions(arguments, "-hsiz");
-  job.metric_in = arguments.text("-sol");
+  job.level_set = level_set_option(arguments);
+  job.metric_in = arguments.text("-met");
+  if (!job.metric_in && !job.level_set) job.metric_in = arguments.text("-sol");
   job.keep_sizes = arguments.has("-optim");
   std::vector<std::string> given;
   const auto add = [&](const char* option) {
@@ -136,9 +144,10 @@ void set_sizes(Job& job, const Arguments& arguments) {
   };
   add("-optim");
   add("-A");
-  if (job.places.any()) add("-f");
+  if (job.places.any() && !job.level_set) add("-f");
   if (!job.places.any()) add("-hsiz");
-  add("-sol");
+  if (!job.level_set) add("-sol");
+  add("-met");
   add("--solution");
   for (const char* option : {"--near", "--on", "--inside"})  // which are one way together
     if (given.empty() || !given.back().starts_with("--")) add(option);
@@ -156,7 +165,7 @@ void set_sizes(Job& job, const Arguments& arguments) {
   job.recovery = recovery_in(arguments);
   if (job.solution.empty() && arguments.has("--recovery"))
     throw UsageError("option --recovery: expected --solution as well, found none");
-  job.metric_found = given.empty();
+  job.metric_found = given.empty() && !job.level_set;
 }
 
 void set_files(Job& job, const Arguments& arguments, const std::optional<fs::path>& output) {
@@ -228,6 +237,7 @@ std::vector<fs::path> outputs_of(const Job& job) {
 void expect_inputs_to_stay(const Job& job) {
   std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
   if (job.metric_in) fields.push_back(*job.metric_in);
+  if (job.level_set && job.level_set->values) fields.emplace_back(*job.level_set->values);
   for (const auto& path : {job.parameters, job.geometry})
     if (path) fields.push_back(*path);
   for (const fs::path& path : job.places.inputs()) fields.push_back(path);
@@ -259,6 +269,8 @@ AdaptJob adapt_job(const Arguments& arguments, const std::optional<fs::path>& ou
 void check_files(AdaptJob& job) {
   if (job.metric_found) job.metric_in = metric_beside(job.input);
   job.metric_found = job.metric_found && job.metric_in;
+  if (job.level_set && !job.level_set->values)
+    if (const auto beside = metric_beside(job.input)) job.level_set->values = beside->string();
   expect_inputs_to_stay(job);
   meshadapt::check_writable(outputs_of(job));
 }
@@ -312,69 +324,31 @@ void expect_right(const meshadapt::AdjacentMesh& before, const meshadapt::Adjace
                            "); nothing was written; please report this with its input");
 }
 
-/// With --join, joins vertices that lie together, in the mesh, its metric and its fields.
-void join_all(const Job& job, AdaptInput& input, meshadapt::Warnings& warnings) {
-  if (!job.join) return;
-  const int dimension = input.file.mesh.dimension;
-  const std::size_t before = input.metric.vertex_count;
-  const auto kept = join(input.file.mesh, *job.join, warnings);
-  input.metric = meshadapt::at_kept(input.metric, kept);
-  for (auto* fields : {&input.file.fields, &input.fields.fields})
-    for (meshadapt::NamedField& field : *fields)
-      if (is_at_vertices(field))
-        field.values =
-            meshadapt::at_kept({dimension, before, {field.type}, std::move(field.values), {}}, kept)
-                .values;
-}
-
-std::string what_was_done(const Job& job, const AdaptSummary& summary) {
-  std::string text = to_text(summary, job.verbosity > 1), written;
+std::string what_was_done(const Job& job, const AdaptInput& input, const AdaptSummary& summary) {
+  std::string text = input.cut ? to_text(*input.cut) : std::string(), written;
+  text += to_text(summary, job.verbosity > 1);
   for (const fs::path& path : outputs_of(job))
     written += (written.empty() ? "written: " : ", ") + path.string();
   return text + meshadapt::printable(written) + "\n";
+}
+
+bool is_level_set(const Job& job, const meshadapt::NamedField& field) {
+  return job.level_set && job.level_set->values.value_or(field.name) == field.name;
 }
 
 void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
                          meshadapt::Warnings& warnings) {
   std::string names;
   for (const meshadapt::NamedField& field : file.fields)
-    if (field.name != "metric") names += (names.empty() ? "" : ", ") + field.name;
+    if (field.name != "metric" && !is_level_set(job, field))
+      names += (names.empty() ? "" : ", ") + field.name;
   if (!names.empty() && job.fields.inputs().empty())
     warnings.push_back(
         file.mesh.name + ": its fields are not carried: " + names +
         "; --field takes those at the vertices of a file along, ductile transfer all");
 }
 
-/// The geometry from the mesh of -geometry; null without that option.
-std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executor, const Job& job,
-                                                         meshadapt::Warnings& warnings) {
-  if (!job.geometry) return nullptr;
-  const MakeMeshOptions& make = job.adapt.make;
-  return std::make_shared<const meshadapt::Geometry>(
-      executor, meshadapt::read_mesh(*job.geometry, &warnings),
-      meshadapt::GeometryOptions{.tolerance = make.hausdorff_tolerance,
-                                 .ridge_angle = make.ridge_angle,
-                                 .complete_boundary = make.complete_boundary});
-}
-
 }  // namespace
-
-AdaptInput read_input(const Executor& executor, Job& job, meshadapt::Warnings& warnings) {
-  if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
-  AdaptInput input;
-  input.file = meshadapt::read_mesh_with_fields(job.input, &warnings);
-  const AnyMesh& mesh = input.file.mesh;
-  input.sizes = job.places.sizes_for(mesh, warnings);
-  input.metric = choose_metric(executor, job, input.file, input.sizes, warnings);
-  input.fields = job.fields.read(mesh, warnings);
-  input.in_force = {metric_said(job, input.file), values_in_force(job)};
-  join_all(job, input, warnings);
-  warn_of_loose_vertices(executor, mesh, warnings);
-  if (!job.places.any())
-    bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
-                  input.metric, job.adapt);
-  return input;
-}
 
 /// Prints warnings, and takes the last memory, before files get their names.
 void write_outputs(const Job& job, const AdaptOutput& output, meshadapt::Warnings& warnings) {
@@ -401,30 +375,32 @@ namespace {
 int work(const Executor& executor, Job job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
-  const auto [file, sizes, metric, fields, in_force] = read_input(executor, job, warnings);
-  const AnyMesh& mesh = file.mesh;
-  warn_of_fields_left(job, file, warnings);
+  const AdaptInput input = read_input(executor, job, warnings);
+  const AnyMesh& mesh = input.file.mesh;
+  warn_of_fields_left(job, input.file, warnings);
   job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
-  AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
+  AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, input.metric, input.sizes);
   const meshadapt::AdjacentMesh before(executor, mesh), after(executor, adapted.mesh);
   if (!adapted.report.checked) expect_right(before, after, job.adapt.make.hausdorff_tolerance);
   adapted.mesh.name = job.output.string();
-  const auto carried = job.fields.carry(executor, mesh, fields, adapted.mesh);
+  const auto carried =
+      job.fields.carry(executor, input.mesh_of_fields(), input.fields, adapted.mesh);
   const AdaptSummary summary = summarise(
-      before, metric, adapted, after,
+      before, input.metric, adapted, after,
       {.before = job.json || job.verbosity > 1,
        .after = job.json || job.verbosity > 0,
        .expects_lengths = job.adapt.insert,
        .keeps_surface = job.adapt.make.hausdorff_tolerance == 0 && !job.adapt.make.lock_boundary,
        .hausdorff_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.hausdorff_tolerance,
-       .in_force = in_force});
+       .in_force = input.in_force});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
-  const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
-  write_outputs(job,
-                {adapted.mesh, adapted.metric, carried, fields.count_of,
-                 job.json ? to_json(summary) : std::string()},
-                warnings);
+  const std::string said = job.verbosity > 0 ? what_was_done(job, input, summary) : std::string();
+  write_outputs(
+      job,
+      {adapted.mesh, adapted.metric, carried, input.fields.count_of,
+       job.json ? to_json(summary, input.cut ? to_json(*input.cut) : "null") : std::string()},
+      warnings);
   // From here on no memory is taken, because the outputs are there.
   const bool taken = is_standard_output(job.output) || job.json == standard_output;
   std::fputs(said.c_str(), taken ? stderr : stdout);
@@ -448,7 +424,10 @@ const Command adapt_command{
     "Without any, the sizes that the mesh has are kept, stretched as they are. Sizes by places "
     "are\n"
     "evaluated on the adapted mesh, too, which is adapted again while it lacks some, at most five\n"
-    "times in all. The metric at the new vertices is written beside the adapted mesh. Old output\n"
+    "times in all. A level set is cut out first; references are 3 below V, 2 above and 10 "
+    "between,\n"
+    "and with -hausd the interface is adapted to its curved surface. The metric at the new "
+    "vertices is written beside the adapted mesh. Old output\n"
     "files stay as they are until the new ones are complete.",
     options,
     run};

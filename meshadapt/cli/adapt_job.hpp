@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "level_set_option.hpp"
 #include "size_options.hpp"
 
 namespace ductile::cli {
@@ -34,6 +37,7 @@ struct AdaptJob {
   meshadapt::Recovery recovery = meshadapt::Recovery::least_squares;
   std::optional<double> join;  // the distance of vertices that become one
   SizeOptions places;
+  std::optional<LevelSetOption> level_set;
   std::optional<std::size_t> memory;  // bytes
   meshadapt::AdaptOptions adapt;
   int verbosity = 1;
@@ -60,10 +64,15 @@ struct AdaptInput {
   meshadapt::AnyField metric;
   CarriedFields::Values fields;
   MetricInForce in_force;
+  std::optional<CutInput> cut;  // with -ls: `file.mesh` and `metric` are those of the cut mesh
+
+  /// The mesh that the fields are on.
+  const meshadapt::AnyMesh& mesh_of_fields() const { return cut ? cut->before : file.mesh; }
 };
 
-/// Reads a job's files except -geometry, joins vertices and bounds the metric; local parameters may
-/// widen the bounds in job.adapt. Throws InputError; UsageError if places do not fit the mesh.
+/// Reads a job's files except -geometry, joins vertices, cuts along a level set and bounds the
+/// metric. Local parameters may widen the bounds in job.adapt, which also gets the surface of the
+/// level set. Throws InputError; UsageError if places do not fit the mesh.
 AdaptInput read_input(const runtime::Executor& executor, AdaptJob& job,
                       meshadapt::Warnings& warnings);
 
@@ -90,6 +99,11 @@ meshadapt::AnyField choose_metric(const runtime::Executor& executor, const Adapt
 
 /// The source of that metric in words: "part.sol (found beside the mesh)".
 std::string metric_said(const AdaptJob& job, const meshadapt::MeshWithFields& file);
+
+/// The geometry from the mesh of -geometry; null without that option.
+std::shared_ptr<const meshadapt::Geometry> read_geometry(const runtime::Executor& executor,
+                                                         const AdaptJob& job,
+                                                         meshadapt::Warnings& warnings);
 
 /// The options about sizes that are in force.
 std::vector<ValueInForce> values_in_force(const AdaptJob& job);

@@ -52,9 +52,9 @@ AnyField choose_metric(const Executor& executor, const AdaptJob& job,
   if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings, bounds);
   if (const auto metric = metric_in(file); metric && !job.keep_sizes)
     return meshadapt::metric_of(*metric, mesh, bounds);
-  warnings.push_back(mesh.name +
-                     ": no metric given (-sol) or found beside it; adapting to the sizes"
-                     " that the mesh has");
+  warnings.push_back(mesh.name + ": no metric given (" +
+                     (job.level_set ? "-met)" : "-sol) or found beside it") +
+                     "; adapting to the sizes that the mesh has");
   return meshadapt::default_metric(executor, mesh);
 }
 
@@ -64,8 +64,9 @@ std::string metric_said(const AdaptJob& job, const meshadapt::MeshWithFields& fi
   if (job.adapt.curved_sizes) return "sizes from curved boundaries (-A)";
   if (job.size) return "the size of -hsiz everywhere";
   if (job.metric_in)
-    return job.metric_in->string() +
-           (job.metric_found ? " (found beside the mesh)" : " (given by -sol)");
+    return job.metric_in->string() + (job.metric_found ? " (found beside the mesh)"
+                                      : job.level_set  ? " (given by -met)"
+                                                       : " (given by -sol)");
   if (metric_in(file) && !job.keep_sizes) return "the field 'metric' of the mesh's file";
   return "the sizes that the mesh has";
 }

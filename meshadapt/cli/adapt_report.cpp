@@ -233,7 +233,7 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
          figures(summary.after, with_histograms) + held_edges(report);
 }
 
-std::string to_json(const AdaptSummary& summary) {
+std::string to_json(const AdaptSummary& summary, const std::string& cut) {
   const AdaptReport& report = summary.report;
   std::string kernel_list, warnings;
   for (const auto& [name, kernel] : meshadapt::kernels)
@@ -242,7 +242,7 @@ std::string to_json(const AdaptSummary& summary) {
   for (const std::string& warning : report.warnings)
     warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
   return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +
-         ",\n \"metric\": " + json_of(summary.in_force) +
+         ",\n \"cut\": " + cut + ",\n \"metric\": " + json_of(summary.in_force) +
          ", \"elements_wanted\": " + std::to_string(elements_wanted(summary.after)) +
          ", \"elements\": " + std::to_string(element_count(summary.after)) +
          ",\n \"threads\": " + std::to_string(summary.threads) +

@@ -53,6 +53,7 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
                        const SummaryOptions& options);
 
 std::string to_text(const AdaptSummary& summary, bool with_histograms);
-std::string to_json(const AdaptSummary& summary);
+/// `cut` is the object about a level set, or null.
+std::string to_json(const AdaptSummary& summary, const std::string& cut = "null");
 
 }  // namespace ductile::cli

@@ -77,9 +77,13 @@ void widen(meshadapt::AdaptOptions& adapt, const std::vector<LocalSize>& local_s
 
 }  // namespace
 
+std::optional<fs::path> parameter_file(const std::optional<fs::path>& given, const AnyMesh& mesh) {
+  return given ? file_given(*given, mesh) : file_beside(mesh);
+}
+
 std::vector<LocalSize> local_parameters(const std::optional<fs::path>& given, const AnyMesh& mesh,
                                         const meshadapt::AdaptOptions& adapt, Warnings& warnings) {
-  const std::optional<fs::path> file = given ? file_given(*given, mesh) : file_beside(mesh);
+  const std::optional<fs::path> file = parameter_file(given, mesh);
   if (!file) return {};
   std::vector<LocalSize> local_sizes = meshadapt::read_local_sizes(*file, &warnings);
   for (const LocalSize& local : local_sizes)

@@ -15,6 +15,10 @@
 
 namespace ductile::cli {
 
+/// The file, if there is one.
+std::optional<std::filesystem::path> parameter_file(
+    const std::optional<std::filesystem::path>& given, const meshadapt::AnyMesh& mesh);
+
 /// The sizes in the file, if there is one. Warns of a file that was found without -f, and of
 /// parameters without effect. Throws InputError. Thread safety: any thread.
 std::vector<meshadapt::LocalSize> local_parameters(

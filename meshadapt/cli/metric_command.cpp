@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "distance_field.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
@@ -29,7 +30,7 @@ using meshadapt::AnyMesh;
 using meshadapt::Metric;
 using runtime::Executor;
 
-constexpr std::array<Option, 16> options{{
+constexpr std::array<Option, 17> options{{
     {"-o", "OUT", "where the metric goes, a .sol or .solb; with the mesh into a .vtu or .msh",
      "--out"},
     {"--complexity", "X", "make, scale: the integral of sqrt(det metric) to reach"},
@@ -44,6 +45,7 @@ constexpr std::array<Option, 16> options{{
     {"--on", "BOUNDARY:H[:GROW]", "size: H on a boundary, by its reference or name; likewise"},
     {"--in", "REGION:H[:GROW]", "size: H in a region, instead of the default; likewise",
      "--inside"},
+    {"-hausd", "X", "distance: how far the smooth interface may be from its facets"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"--anisotropy", "X", "lets sizes differ by a factor of X at most between directions"},
@@ -59,6 +61,8 @@ struct Job {
   std::vector<fs::path> fields;
   meshadapt::SolutionMetricOptions fit;  // fit.goal.bounds hold for all operations
   SizeOptions sizes;
+  std::vector<std::string> inside;  // regions that a distance is negative in
+  double hausdorff = 0;
   double gradation = 0;
   int threads = 0, verbosity = 1;
 
@@ -75,9 +79,10 @@ void set_files(Job& job, const Arguments& arguments) {
     std::string_view name, takes;
     std::size_t least, most;  // files
   };
-  constexpr std::array<Operation, 7> operations{
+  constexpr std::array<Operation, 8> operations{
       {{"make", "a mesh and a field", 2, std::string::npos},
        {"size", "a mesh", 1, 1},
+       {"distance", "a mesh", 1, 1},
        {"implied", "a mesh", 1, 1},
        {"intersect", "a mesh and two metrics or more", 3, std::string::npos},
        {"scale", "a mesh and a metric", 2, 2},
@@ -88,8 +93,9 @@ void set_files(Job& job, const Arguments& arguments) {
     return !words.empty() && one.name == words[0];
   });
   if (found == operations.end())
-    throw UsageError("expected make, size, implied, intersect, scale, bound or grade, found " +
-                     (words.empty() ? "nothing" : "'" + words[0] + "'"));
+    throw UsageError(
+        "expected make, size, distance, implied, intersect, scale, bound or grade, found " +
+        (words.empty() ? "nothing" : "'" + words[0] + "'"));
   job.operation = words[0];
   const std::size_t files = words.size() - 1;
   if (files < found->least || files > found->most)
@@ -137,7 +143,17 @@ void set_goal(Job& job, const Arguments& arguments) {
   job.fit.recovery = recovery_in(arguments);
 }
 
+void set_distance(Job& job, const Arguments& arguments) {
+  refuse(job, arguments,
+         {"--default", "--near", "--on", "-hmin", "-hmax", "--anisotropy", "-hgrad"});
+  job.inside = arguments.texts("--in");
+  if (job.inside.empty()) throw UsageError("distance: expected --inside with a region");
+  job.hausdorff = size_option(arguments, "-hausd").value_or(0);
+}
+
 void set_sizes(Job& job, const Arguments& arguments) {
+  if (job.operation == "distance") return set_distance(job, arguments);
+  refuse(job, arguments, {"-hausd"});
   if (job.operation != "size")
     return refuse(job, arguments, {"--default", "--near", "--on", "--in"});
   refuse(job, arguments, {"--anisotropy"});
@@ -322,21 +338,25 @@ class Work {
   std::vector<Metric<Dim>> metric_of_;                                        // [vertex]
 };
 
+void write(const Job& job, const AnyMesh& mesh, const AnyField& field, const std::string& summary) {
+  const char* const name = job.operation == "distance" ? "distance" : "metric";
+  if (holds_fields(job.output))
+    meshadapt::write_mesh(job.output, mesh, {.fields = meshadapt::named_fields(field, name)});
+  else
+    meshadapt::write_field(job.output, field);
+  if (job.verbosity > 0)
+    std::printf("%s\nwritten: %s\n", summary.c_str(),
+                meshadapt::printable(job.output.string()).c_str());
+}
+
 template <int Dim>
 void work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
           meshadapt::Warnings& warnings) {
-  const AnyMesh& mesh = file.mesh;
   Work<Dim> work(executor, job, file, warnings);
   const AnyField metric = work.run();
   const std::string summary = work.summary();  // which may find fault with the mesh: before writing
   print_warnings(warnings, job.verbosity);
-  if (holds_fields(job.output))
-    meshadapt::write_mesh(job.output, mesh, {.fields = meshadapt::named_fields(metric, "metric")});
-  else
-    meshadapt::write_field(job.output, metric);
-  if (job.verbosity > 0)
-    std::printf("%s\nwritten: %s\n", summary.c_str(),
-                meshadapt::printable(job.output.string()).c_str());
+  write(job, file.mesh, metric, summary);
 }
 
 int run(const Arguments& arguments) {
@@ -344,6 +364,12 @@ int run(const Arguments& arguments) {
   return run_in_team({.threads = job.threads}, [&](const Executor& executor) {
     meshadapt::Warnings warnings;
     const auto file = meshadapt::read_mesh_with_fields(job.mesh, &warnings);
+    if (job.operation == "distance") {
+      const DistanceField distance(executor, file.mesh, job.inside, job.hausdorff);
+      print_warnings(warnings, job.verbosity);
+      write(job, file.mesh, distance.field, distance.summary);
+      return done;
+    }
     file.mesh.dimension == 2 ? work<2>(executor, job, file, warnings)
                              : work<3>(executor, job, file, warnings);
     return done;
@@ -354,12 +380,15 @@ int run(const Arguments& arguments) {
 
 const Command metric_command{
     "metric",
-    "make|size|implied|intersect|scale|bound|grade MESH [FIELD...] -o OUT",
+    "make|size|distance|implied|intersect|scale|bound|grade MESH [FIELD...] -o OUT",
     "makes metrics from fields, and changes them",
     "  make MESH [FILE] [FIELD...]  the metric in which linear interpolation of a field at the\n"
     "                            vertices, or of several, is best, for a complexity or an error:\n"
     "                            fields of MESH by name, or of FILE, which may have one alone\n"
     "  size MESH                 sizes by places, boundaries and regions; the finest holds\n"
+    "  distance MESH             the signed distance to the smooth interface around the regions "
+    "of\n"
+    "                            --inside, where it is negative; without bounds and -hgrad\n"
     "  implied MESH              the metric that the mesh is adapted to as it is\n"
     "  intersect MESH A B ...    the finest sizes that any of the metrics asks for\n"
     "  scale MESH METRIC         multiplied by one factor, to reach a complexity\n"

@@ -12,10 +12,9 @@
 namespace ductile::cli {
 
 /// Options without a line in help. A value in brackets is a number that may be missing.
-inline constexpr std::array<Option, 14> mmg_options{{{"-d", "", ""},
+inline constexpr std::array<Option, 12> mmg_options{{{"-d", "", ""},
                                                      {"-default", "", ""},
                                                      {"-in", "MESH", ""},
-                                                     {"-isoref", "N", ""},
                                                      {"-keep-ref", "", ""},
                                                      {"-nofem", "", ""},
                                                      {"-nosizreq", "", ""},
@@ -23,7 +22,6 @@ inline constexpr std::array<Option, 14> mmg_options{{{"-d", "", ""},
                                                      {"-octree", "N", ""},
                                                      {"-opnbdy", "", ""},
                                                      {"-optim", "", ""},
-                                                     {"-rmc", "[X]", ""},
                                                      {"-rn", "[N]", ""},
                                                      {"-val", "", ""}}};
 

@@ -25,7 +25,7 @@ std::string written(const Vector<Dim>& point) {
 template <int Dim>
 struct Checked {
   SurfaceFunction function;
-  double reach;
+  double reach;  // the largest distance of a point from its projection
 
   Vector<Dim> operator()(const Vector<Dim>& point) const {
     std::array<double, 3> from{};
@@ -35,6 +35,7 @@ struct Checked {
     for (int i = 0; i < Dim; ++i) result[i] = to[static_cast<std::size_t>(i)];
     const double distance = norm(result - point);
     if (distance <= reach) return result;
+    if (function.approximate) return unknown_place<Dim>();
     throw InputError("the function of the surface with the reference " +
                      std::to_string(function.reference) + ": expected a point within " +
                      number(reach) + " of " + written(point) + ", found " + written(result));
@@ -55,9 +56,9 @@ std::array<PatchId, 2> first_two(const std::vector<PatchId>& patches) {
   return {patches.front(), patches.back() == patches.front() ? 0 : patches.back()};
 }
 
-/// Goes to where two surfaces meet, near a point: to the line in which the planes meet that touch
-/// them near there, again and again. The normal of each is that in which a point of the other is
-/// off it, which is one however close to both the point is.
+/// Finds the point where two surfaces meet near a point: steps to the line in which their tangent
+/// planes meet, again and again. The normal of each surface is the direction from it to the closest
+/// point of the other, which is accurate however close the point is to both. Unknown if one is.
 struct OnBoth {
   Projection<3> first, second;
 
@@ -67,6 +68,7 @@ struct OnBoth {
     for (int step = 0; step < steps; ++step) {
       const Vector<3> a = first(point), b = second(point);
       const double off_a = norm(a - point), off_b = norm(b - point);
+      if (!is_known(a) || !is_known(b)) return unknown_place<3>();
       if (std::max(off_a, off_b) <= rounding * norm(point)) break;
       const Vector<3> u = b - first(b), v = a - second(a);
       if (norm(v) <= little * off_a) {
@@ -100,7 +102,7 @@ void expect_functions(std::span<const SurfaceFunction> functions) {
 template <int Dim>
 std::vector<Projection<Dim>> projections_of_patches(const Mesh<Dim>& mesh,
                                                     std::span<const SurfaceFunction> functions,
-                                                    double reach) {
+                                                    const Reach& reach) {
   std::vector<Projection<Dim>> of_patch;
   if (functions.empty()) return of_patch;
   of_patch.resize(mesh.patches.size());
@@ -108,7 +110,8 @@ std::vector<Projection<Dim>> projections_of_patches(const Mesh<Dim>& mesh,
     const auto found = std::find_if(functions.begin(), functions.end(), [&](const auto& function) {
       return function.reference == mesh.patches[p].reference;
     });
-    if (found != functions.end()) of_patch[p] = Checked<Dim>{*found, reach};
+    if (found != functions.end())
+      of_patch[p] = Checked<Dim>{*found, found->approximate ? reach.approximate : reach.exact};
   }
   return of_patch;
 }
@@ -135,9 +138,9 @@ std::vector<Projection<3>> projections_of_curves(const Mesh<3>& mesh,
 
 template std::vector<Projection<2>> projections_of_patches(const Mesh<2>&,
                                                            std::span<const SurfaceFunction>,
-                                                           double);
+                                                           const Reach&);
 template std::vector<Projection<3>> projections_of_patches(const Mesh<3>&,
                                                            std::span<const SurfaceFunction>,
-                                                           double);
+                                                           const Reach&);
 
 }  // namespace ductile::meshadapt

@@ -1,10 +1,11 @@
 /// @file
-/// Projection: where a point lies on what a patch or a curve is truly like, by the functions that
-/// the caller has given for surfaces.
+/// Projection: projects a point onto the user's surface functions.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,17 +16,33 @@
 
 namespace ductile::meshadapt {
 
-/// The closest point, nearly. Throws InputError for what no projection can be, and what the
-/// caller's function throws. Thread safety: any thread.
+/// The closest point, nearly; unknown_place() where the caller's function does not know it. Throws
+/// InputError if the function returns a point that is too far away, and the function's exceptions.
+/// Thread safety: any thread.
 template <int Dim>
 using Projection = std::function<Vector<Dim>(const Vector<Dim>&)>;
 
-/// [patch], empty where the model of the mesh is all that is known; or empty as a whole. `reach` is
-/// how far a point may be from its projection.
+template <int Dim>
+Vector<Dim> unknown_place() {
+  Vector<Dim> place;
+  place.x.fill(std::numeric_limits<double>::quiet_NaN());
+  return place;
+}
+template <int Dim>
+bool is_known(const Vector<Dim>& place) {
+  return std::isfinite(place[0]);
+}
+
+/// The largest distance of a point from its projection, by SurfaceFunction::approximate.
+struct Reach {
+  double exact, approximate;
+};
+
+/// [patch], empty where only the model of the mesh is known; or empty as a whole.
 template <int Dim>
 std::vector<Projection<Dim>> projections_of_patches(const Mesh<Dim>& mesh,
                                                     std::span<const SurfaceFunction> functions,
-                                                    double reach);
+                                                    const Reach& reach);
 
 /// The same of curves, [curve]. Where two surfaces meet that are functions, or one and a plane,
 /// points go to both.
@@ -38,9 +55,9 @@ void expect_functions(std::span<const SurfaceFunction> functions);
 
 extern template std::vector<Projection<2>> projections_of_patches(const Mesh<2>&,
                                                                   std::span<const SurfaceFunction>,
-                                                                  double);
+                                                                  const Reach&);
 extern template std::vector<Projection<3>> projections_of_patches(const Mesh<3>&,
                                                                   std::span<const SurfaceFunction>,
-                                                                  double);
+                                                                  const Reach&);
 
 }  // namespace ductile::meshadapt

@@ -202,8 +202,9 @@ Vector<Dim> Sheets<Dim, Corners>::direction_at(const Vector<Dim>& point,
   return direction_along<Dim, Corners>(curved.tangents(*weights));
 }
 
-/// The closest point of a sheet that is a function, if it is near the closest one of the model, and
-/// not beyond where the sheet ends: then that of this one.
+/// The closest point of the sheet's function to the point itself, if that is near the closest point
+/// of the model; otherwise, for instance beyond the end of the sheet, its closest point to the
+/// model's point. The model's point if there is no function, or it is unknown there.
 template <int Dim, std::size_t Corners>
 Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
                                            std::uint32_t sheet) const {
@@ -213,7 +214,8 @@ Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vecto
     const Vector<Dim> there = projection_of_[sheet](point);
     if (norm(there - model) <= near * tolerance_) return there;
   }
-  return projection_of_[sheet](model);
+  const Vector<Dim> there = projection_of_[sheet](model);
+  return is_known(there) ? there : model;
 }
 
 /// Looks nearby first, because it is likely there; reach and tolerance may be large.
@@ -235,6 +237,24 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
   return {};
 }
 
+/// The point of the sheet near the closest point of its flat parts.
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest_at(const Vector<Dim>& point, const Closest& closest) const
+    -> Nearest {
+  const auto next = std::upper_bound(first_part_.begin(), first_part_.end(), closest.part);
+  const auto facet = static_cast<std::uint32_t>(next - first_part_.begin() - 1);
+  Nearest nearest{parts_[closest.part].sheet, facet, 0, closest.point,
+                  shape_of_[closest.part].direction};
+  if (const auto weights = weights_at(point, closest)) {
+    const Curved& curved = curved_[origin_of_[closest.part].curved];
+    nearest.point = curved.at(*weights);
+    nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
+  }
+  nearest.point = on_sheet(point, nearest.point, nearest.sheet);
+  nearest.distance = norm(nearest.point - point);
+  return nearest;
+}
+
 /// The nearest of the parts for which is_wanted(part) holds. Looks nearby first.
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
@@ -248,20 +268,41 @@ auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
       if (is_wanted(part)) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);
-    if (!(best.distance <= within)) continue;
-    const auto next = std::upper_bound(first_part_.begin(), first_part_.end(), best.part);
-    const auto facet = static_cast<std::uint32_t>(next - first_part_.begin() - 1);
-    Nearest nearest{parts_[best.part].sheet, facet, 0, best.point, shape_of_[best.part].direction};
-    if (const auto weights = weights_at(point, best)) {
-      const Curved& curved = curved_[origin_of_[best.part].curved];
-      nearest.point = curved.at(*weights);
-      nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
-    }
-    nearest.point = on_sheet(point, nearest.point, nearest.sheet);
-    nearest.distance = norm(nearest.point - point);
-    return nearest;
+    if (best.distance <= within) return nearest_at(point, best);
   }
   return {};
+}
+
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
+                                   std::span<const std::uint8_t> is_wanted) const
+    -> std::optional<Nearest> {
+  Closest best;
+  double square = best.distance;
+  tree_->visit_near(point, square, [&](std::size_t place) {
+    const std::uint32_t facet = tree_->order()[place];
+    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part) {
+      if (is_wanted[parts_[part].sheet] == 0) continue;
+      const Vector<Dim> there = closest_point(parts_[part].corner, point);
+      const double distance = norm(there - point);
+      if (distance < best.distance) best = {distance, there, part};
+    }
+    square = best.distance * best.distance;
+  });
+  if (!std::isfinite(best.distance)) return {};
+  // Steps to the closest point of a curved facet converge for points that are closer to it than its
+  // radius of curvature, which is longer than its edges: they start from a point on the way.
+  constexpr int times = 2;
+  const Points corner = facet_of(best.part);
+  const double length = norm(corner[1] - corner[0]);
+  Nearest nearest{parts_[best.part].sheet, 0, best.distance, best.point, {}};
+  for (int time = 0; time < times; ++time) {
+    const Vector<Dim> from = nearest.point, away = point - from;
+    const double share = norm(away) > length ? length / norm(away) : 1;
+    nearest = nearest_at(from + share * away, best);
+  }
+  nearest.distance = norm(nearest.point - point);
+  return nearest;
 }
 
 template <int Dim, std::size_t Corners>

@@ -104,6 +104,9 @@ class Sheets {
   /// The same of one sheet.
   std::optional<Nearest> nearest_on(const Vector<Dim>& point, std::uint32_t sheet,
                                     double reach) const;
+  /// The same of the sheets with is_wanted[sheet], at any distance.
+  std::optional<Nearest> nearest(const Vector<Dim>& point,
+                                 std::span<const std::uint8_t> is_wanted) const;
   /// The same of sheets of one reference, where they are turned by less than 60 degrees against a
   /// direction of unit length. `reference_of` is [sheet].
   std::optional<Nearest> nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
@@ -146,6 +149,7 @@ class Sheets {
   Vector<Dim> direction_at(const Vector<Dim>& point, const Closest& closest) const;
   Vector<Dim> on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
                        std::uint32_t sheet) const;
+  Nearest nearest_at(const Vector<Dim>& point, const Closest& closest) const;
   std::optional<Nearest> nearest_of(const Vector<Dim>& point, double reach, auto&& is_wanted) const;
 
   void each_meeting(const Box<Dim>& box, auto&& visit) const;

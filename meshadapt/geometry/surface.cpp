@@ -55,7 +55,8 @@ class SurfaceMaker {
     model.edge_samples.facets = std::move(sampled_edges);
     model.edge_samples.connect();
     model.facet_samples.connect();
-    const auto on_patches = projections_of_patches(mesh_, parts_.options.functions, reach());
+    const auto on_patches =
+        projections_of_patches(mesh_, parts_.options.functions, {reach(), parts_.within.surface});
     expect_on(on_patches);
     return std::shared_ptr<const Surface<Dim>>(new Surface<Dim>{
         {facet_parts, parts_.within.surface, model.facets, on_patches, parts_.within.least_turn},
@@ -84,7 +85,7 @@ class SurfaceMaker {
     return longest + fitting * parts_.within.surface;
   }
 
-  /// Are the vertices of the mesh on them?
+  /// Throws InputError unless the vertices of the mesh are on them, where they are known.
   void expect_on(const std::vector<Projection<Dim>>& on_patches) const {
     if (on_patches.empty()) return;
     for (const TaggedFacet<Dim>& facet : facets_) {

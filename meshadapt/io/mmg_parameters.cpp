@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "ductile/meshadapt/level_set_references.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 #include "file_bytes.hpp"
 #include "number_reader.hpp"
@@ -13,26 +16,41 @@ namespace ductile::meshadapt {
 
 namespace {
 
+struct Parameters {
+  std::vector<LocalSize> local_sizes;
+  std::vector<LevelSetReference> materials;
+  Warnings base_references, level_set_references;  // that they are left out, if they are there
+};
+
 class Reader {
  public:
-  Reader(const FileBytes& bytes, Warnings* warnings)
-      : bytes_(bytes), in_(bytes, '#'), warnings_(warnings) {}
+  explicit Reader(const FileBytes& bytes) : bytes_(bytes), in_(bytes, '#') {}
 
-  std::vector<LocalSize> read() {
+  Parameters read() {
     while (!in_.peek_word().empty()) {
       const std::string_view word = in_.word();
       const std::string keyword = lower(word);
       if (keyword == "parameters")
         read_parameters();
-      else if (keyword == "lsreferences" || keyword == "lsbasereferences")
-        leave_out(std::string(word));
+      else if (keyword == "lsreferences")
+        read_materials();
+      else if (keyword == "lsbasereferences")
+        leave_out_base_references();
       else
-        in_.fail("expected Parameters, found " + quoted(word) + "; correct it");
+        in_.fail("expected Parameters or LSReferences, found " + quoted(word) + "; correct it");
     }
-    return std::move(local_sizes_);
+    return std::move(parameters_);
   }
 
  private:
+  std::int64_t count() {
+    const auto count = in_.integer<std::int64_t>("the number of references");
+    if (count < 0)
+      in_.fail("expected a number of references of 0 or more, found " + std::to_string(count) +
+               "; correct it");
+    return count;
+  }
+
   double size(const char* expected) {
     const double value = in_.real(expected);
     if (!std::isfinite(value))
@@ -41,11 +59,8 @@ class Reader {
   }
 
   void read_parameters() {
-    const auto count = in_.integer<std::int64_t>("the number of references");
-    if (count < 0)
-      in_.fail("expected a number of references of 0 or more, found " + std::to_string(count) +
-               "; correct it");
-    for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t entries = count();
+    for (std::int64_t i = 0; i < entries; ++i) {
       LocalSize local;
       local.reference = in_.integer<std::int32_t>("a reference");
       local.dimension = dimension(in_.word());
@@ -54,7 +69,7 @@ class Reader {
       if (local.largest > 0 && local.smallest > local.largest)
         in_.fail("expected hmin not to be above hmax, found that it is; correct one of them");
       local.hausdorff_tolerance = size("hausd");
-      local_sizes_.push_back(local);
+      parameters_.local_sizes.push_back(local);
     }
   }
 
@@ -73,28 +88,60 @@ class Reader {
              "; correct it");
   }
 
-  /// Goes to the next keyword. The word "nosplit" stands among numbers.
-  void leave_out(const std::string& word) {
-    if (warnings_ != nullptr)
-      warnings_->push_back(bytes_.name + ": left out " + word + ", because level sets are not cut");
-    while (!in_.peek_word().empty()) {
-      const std::string_view word_there = in_.peek_word();
-      if (!number_in<double>(word_there) && lower(word_there) != "nosplit") return;
-      in_.word();
+  void read_materials() {
+    const std::int64_t entries = count();
+    for (std::int64_t i = 0; i < entries; ++i) {
+      LevelSetReference material;
+      material.reference = in_.integer<std::int32_t>("a reference");
+      if (!materials_.insert(material.reference).second)
+        in_.fail("expected each reference once, found " + std::to_string(material.reference) +
+                 " again; remove one of its entries");
+      material.split = lower(in_.peek_word()) != "nosplit";
+      if (material.split) {
+        material.minus = in_.integer<std::int32_t>("nosplit or the reference below the level");
+        material.plus = in_.integer<std::int32_t>("the reference above the level");
+      } else {
+        in_.word();
+      }
+      parameters_.materials.push_back(material);
     }
+    parameters_.level_set_references = {bytes_.name +
+                                        ": left out LSReferences, because no level set is cut"};
+  }
+
+  void leave_out_base_references() {
+    const std::int64_t entries = count();
+    for (std::int64_t i = 0; i < entries; ++i) in_.integer<std::int32_t>("a reference");
+    parameters_.base_references = {
+        bytes_.name + ": left out LSBaseReferences; small components go wherever they are"};
   }
 
   const FileBytes& bytes_;
   NumberReader in_;
-  Warnings* warnings_;
-  std::vector<LocalSize> local_sizes_;
+  Parameters parameters_;
+  std::set<std::int32_t> materials_;
 };
+
+void append(Warnings* to, const Warnings& from) {
+  if (to != nullptr) to->insert(to->end(), from.begin(), from.end());
+}
 
 }  // namespace
 
 std::vector<LocalSize> read_local_sizes(const std::filesystem::path& path, Warnings* warnings) {
   const FileBytes bytes = read_bytes(path);
-  return Reader(bytes, warnings).read();
+  Parameters parameters = Reader(bytes).read();
+  append(warnings, parameters.level_set_references);
+  append(warnings, parameters.base_references);
+  return std::move(parameters.local_sizes);
+}
+
+std::vector<LevelSetReference> read_level_set_references(const std::filesystem::path& path,
+                                                         Warnings* warnings) {
+  const FileBytes bytes = read_bytes(path);
+  Parameters parameters = Reader(bytes).read();
+  append(warnings, parameters.base_references);
+  return std::move(parameters.materials);
 }
 
 }  // namespace ductile::meshadapt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -287,10 +288,20 @@ std::vector<Vector<Dim>> recover_gradient(const Executor& executor, const FixedM
                                           std::span<const double> value_of, Recovery recovery) {
   expect_value_everywhere(mesh, value_of);
   if (recovery == Recovery::double_projection) return projected_gradient(executor, mesh, value_of);
+  std::vector<VertexId> all(mesh.vertex_count());
+  std::iota(all.begin(), all.end(), VertexId{0});
+  return recover_gradient_at<Dim>(executor, mesh, value_of, all);
+}
+
+template <int Dim>
+std::vector<Vector<Dim>> recover_gradient_at(const Executor& executor, const FixedMesh<Dim>& mesh,
+                                             std::span<const double> value_of,
+                                             std::span<const VertexId> at) {
+  expect_value_everywhere(mesh, value_of);
   QuadraticFit<Dim> fit(executor, mesh, value_of);
-  std::vector<Vector<Dim>> gradient_of(mesh.vertex_count());
-  parallel_for(executor, mesh.vertex_count(),
-               [&](std::size_t v) { gradient_of[v] = fit.at(static_cast<VertexId>(v)).gradient; });
+  std::vector<Vector<Dim>> gradient_of(at.size());
+  parallel_for(executor, at.size(),
+               [&](std::size_t i) { gradient_of[i] = fit.at(at[i]).gradient; });
   return gradient_of;
 }
 
@@ -317,6 +328,12 @@ template std::vector<Vector<2>> recover_gradient(const Executor&, const FixedMes
                                                  std::span<const double>, Recovery);
 template std::vector<Vector<3>> recover_gradient(const Executor&, const FixedMesh<3>&,
                                                  std::span<const double>, Recovery);
+template std::vector<Vector<2>> recover_gradient_at(const Executor&, const FixedMesh<2>&,
+                                                    std::span<const double>,
+                                                    std::span<const VertexId>);
+template std::vector<Vector<3>> recover_gradient_at(const Executor&, const FixedMesh<3>&,
+                                                    std::span<const double>,
+                                                    std::span<const VertexId>);
 template std::vector<Metric<2>> recover_hessian(const Executor&, const FixedMesh<2>&,
                                                 std::span<const double>, Recovery);
 template std::vector<Metric<3>> recover_hessian(const Executor&, const FixedMesh<3>&,

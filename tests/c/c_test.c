@@ -497,6 +497,148 @@ static void test_guide(void) {
 #include "guide.inc"
   EXPECT(x != NULL && ductile_mesh_count(adapted, DUCTILE_VERTICES) > 50);
   ductile_mesh_destroy(adapted);
+}
+
+/** A disk of radius 1/2 in one of radius 1. */
+static void test_signed_distance(void) {
+  double x[2 * 97] = {0}, distances[97];
+  int32_t triangles[3 * 160], references[160];
+  int64_t n = 0;
+  for (int i = 0; i < 96; ++i) {
+    const double angle = i % 32 * acos(-1) / 16, radius = (i / 32 + 1) / 4. + (i >= 64 ? .25 : 0);
+    x[2 * i + 2] = radius * cos(angle);
+    x[2 * i + 3] = radius * sin(angle);
+  }
+  for (int i = 0; i < 32; ++i) {
+    const int a = i + 1, b = (i + 1) % 32 + 1;
+    const int32_t corners[] = {0, a,      b,      a,      a + 32, b + 32, a,     b + 32,
+                               b, a + 32, a + 64, b + 64, a + 32, b + 64, b + 32};
+    for (int k = 0; k < 5; ++k, ++n) {
+      memcpy(triangles + 3 * n, corners + 3 * k, 3 * sizeof *corners);
+      references[n] = k < 3 ? 3 : 2;
+    }
+  }
+  ductile_mesh* mesh = NULL;
+  EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(mesh, 97, x, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_elements(mesh, n, triangles, references) == DUCTILE_OK);
+  const int32_t inside = 3, missing = 7;
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &inside, 97, NULL, distances) == DUCTILE_OK);
+  EXPECT(fabs(distances[0] + .5) < 1e-3 && distances[33] == 0 && fabs(distances[96] - .5) < 1e-3);
+  const double points[] = {.51, 0, 0, -.3, .4975, .0488};
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &inside, 3, points, distances) == DUCTILE_OK);
+  EXPECT(fabs(distances[0] - .01) < 1e-5 && fabs(distances[1] + .2) < 1e-4);
+  EXPECT(fabs(distances[2] - (hypot(.4975, .0488) - .5)) < 1e-5);
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &inside, 3, NULL, distances) ==
+         DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("count: expected the number of vertices, 97, because there are no points; found 3");
+  EXPECT(ductile_signed_distance(mesh, NULL, 1, &missing, 97, NULL, distances) ==
+         DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("mesh: no element has the reference 7, which is to be inside");
+  ductile_mesh_destroy(mesh);
+}
+
+/* A disc of radius .3 in a square of n x n cells. */
+static ductile_mesh* make_cells(int n, double* phi) {
+  ductile_mesh* mesh = NULL;
+  double* points = malloc(sizeof(double) * (size_t)(2 * (n + 1) * (n + 1)));
+  int32_t* corners = malloc(sizeof(int32_t) * (size_t)(6 * n * n));
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) {
+      const int v = i * (n + 1) + j;
+      points[2 * v] = (double)i / n;
+      points[2 * v + 1] = (double)j / n;
+      phi[v] = hypot(points[2 * v] - .5, points[2 * v + 1] - .5) - .3;
+      if (i == n || j == n) continue;
+      const int32_t cell[] = {v, v + n + 1, v + n + 2, v, v + n + 2, v + 1};
+      memcpy(corners + 6 * (i * n + j), cell, sizeof cell);
+    }
+  EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(mesh, (n + 1) * (n + 1), points, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_elements(mesh, 2 * n * n, corners, NULL) == DUCTILE_OK);
+  free(points);
+  free(corners);
+  return mesh;
+}
+
+/* The largest distance of the interface's vertices from the circle; -1 without an interface. */
+static double off_disc(const ductile_mesh* mesh, int32_t reference) {
+  const double* x = ductile_mesh_coordinates(mesh);
+  const int32_t* corners = ductile_mesh_corners(mesh, DUCTILE_FACETS);
+  const int32_t* references = ductile_mesh_references(mesh, DUCTILE_FACETS);
+  double most = -1;
+  for (int64_t i = 0; i < 2 * ductile_mesh_count(mesh, DUCTILE_FACETS); ++i)
+    if (references[i / 2] == reference)
+      most = fmax(most, fabs(hypot(x[2 * corners[i]] - .5, x[2 * corners[i] + 1] - .5) - .3));
+  return most;
+}
+
+static int64_t elements_with(const ductile_mesh* mesh, int32_t reference) {
+  const int32_t* references = ductile_mesh_references(mesh, DUCTILE_ELEMENTS);
+  int64_t count = 0;
+  for (int64_t i = 0; i < ductile_mesh_count(mesh, DUCTILE_ELEMENTS); ++i)
+    count += references[i] == reference;
+  return count;
+}
+
+static void test_level_sets(void) {
+  double phi[21 * 21], value = 0, weights[2000];
+  int32_t ends[4000], elements[4000];
+  ductile_mesh *mesh = make_cells(20, phi), *cut = NULL, *adapted = NULL;
+  ductile_options* options = NULL;
+  EXPECT(ductile_options_create(&options) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "threads", 2) == DUCTILE_OK);
+  EXPECT(ductile_cut(NULL, phi, options, &cut) == DUCTILE_WRONG_INPUT && cut == NULL);
+  EXPECT(ductile_cut(mesh, NULL, NULL, &cut) == DUCTILE_WRONG_INPUT && cut == NULL);
+  EXPECT(ductile_cut(mesh, phi, NULL, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_cut_origins(mesh, ends, NULL, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("cut: expected a mesh from ductile_cut(), found another");
+  EXPECT(ductile_options_set(options, "rmc", 2) == DUCTILE_OK);
+  EXPECT(ductile_cut(mesh, phi, options, &cut) == DUCTILE_WRONG_INPUT && cut == NULL);
+  EXPECT_TEXT("option rmc: expected a fraction of the volume, from 0 to below 1, found 2");
+  EXPECT(ductile_options_set(options, "rmc", 1e-5) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "isoref", 1.5) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "isoref", 7) == DUCTILE_OK);
+  EXPECT(ductile_options_set_material(options, 0, 2, 1, 2) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set_material(options, 0, 0, 1, 2) == DUCTILE_OK);
+  EXPECT(ductile_options_set_material(options, 0, 1, 11, 12) == DUCTILE_OK);
+  EXPECT(ductile_cut(mesh, phi, options, &cut) == DUCTILE_OK);
+  EXPECT(elements_with(cut, 11) > 0 && elements_with(cut, 12) > 0 && elements_with(cut, 0) == 0);
+  EXPECT(off_disc(cut, 7) > 0 && off_disc(cut, 7) < 1e-3);
+  EXPECT(ductile_cut_origins(cut, ends, weights, elements) == DUCTILE_OK);
+  EXPECT(ductile_cut_origins(cut, NULL, NULL, NULL) == DUCTILE_OK);
+  const double *now = ductile_mesh_coordinates(cut), *then = ductile_mesh_coordinates(mesh);
+  for (int64_t i = 0; i < 2 * ductile_mesh_count(cut, DUCTILE_VERTICES); ++i) {
+    const double t = weights[i / 2];
+    const int32_t* end = ends + i / 2 * 2;
+    EXPECT(fabs(now[i] - (1 - t) * then[2 * end[0] + i % 2] - t * then[2 * end[1] + i % 2]) <
+           1e-14);
+  }
+  for (int64_t i = 0; i < ductile_mesh_count(cut, DUCTILE_ELEMENTS); ++i)
+    EXPECT(elements[i] >= 0 && elements[i] < ductile_mesh_count(mesh, DUCTILE_ELEMENTS));
+  EXPECT(ductile_mesh_report(cut, "volume_below", &value) == DUCTILE_OK);
+  EXPECT(fabs(value / (3.14159265 * .09) - 1) < .01);
+  EXPECT(ductile_mesh_report(cut, "iterations", &value) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "hausd", .002) == DUCTILE_OK);
+  EXPECT(ductile_adapt(cut, 0, NULL, options, &adapted) == DUCTILE_OK);
+  EXPECT(off_disc(adapted, 7) >= 0 && off_disc(adapted, 7) < 1e-3);
+  EXPECT(ductile_mesh_count(adapted, DUCTILE_ELEMENTS) < 1200);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(cut);
+  EXPECT(ductile_options_set(options, "keep_volume", .2) == DUCTILE_OK);
+  EXPECT(ductile_cut(mesh, phi, options, &cut) == DUCTILE_OK);
+  EXPECT(ductile_mesh_report(cut, "volume_below", &value) == DUCTILE_OK);
+  EXPECT(fabs(value - .2) < 1e-5);
+  ductile_mesh_destroy(cut);
+  EXPECT(ductile_options_set(options, "keep_volume", 0) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "ls", 9) == DUCTILE_OK);
+  EXPECT(ductile_cut(mesh, phi, options, &cut) == DUCTILE_OK);
+  EXPECT(ductile_mesh_warning(cut, 0) != NULL);
+  EXPECT(ductile_adapt(cut, 0, NULL, options, &adapted) == DUCTILE_OK);
+  EXPECT(off_disc(adapted, 7) == -1);
+  ductile_options_destroy(options);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(cut);
   ductile_mesh_destroy(mesh);
 }
 
@@ -513,6 +655,8 @@ int main(void) {
   test_sizes();
   test_geometry();
   test_guide();
+  test_level_sets();
+  test_signed_distance();
   printf("%d failures\n", failures);
   return failures != 0;
 }

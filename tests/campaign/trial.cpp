@@ -1,6 +1,8 @@
 #include "trial.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -69,6 +71,7 @@ class Trial {
     if (settings_.all_checks || random_.chance(0.2)) check_threads(threads);
     if (settings_.all_checks || case_.metric || random_.chance(0.25)) check_info();
     if (settings_.all_checks || random_.chance(0.25)) check_closure(adapted);
+    if (settings_.all_checks || random_.chance(0.2)) check_level_set();
     return outcome_;
   }
 
@@ -211,6 +214,57 @@ class Trial {
         growth_allowed * static_cast<double>(first.elements().size() + few_elements))
       fail(Verdict::wrong, "growth: " + std::to_string(first.elements().size()) +
                                " elements, then " + std::to_string(after.elements().size()));
+    prefix_.clear();
+  }
+
+  /// Waves in random directions, sometimes with kinks or with zeros at points.
+  Field level_set() {
+    Point low = case_.mesh.points[0], high = low;
+    for (const Point& point : case_.mesh.points)
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], point[i]);
+        high[i] = std::max(high[i], point[i]);
+      }
+    const double extent = norm(high - low), shift = random_.uniform(-1, 1);
+    const std::array<Point, 2> waves = {random_.uniform(2, 15) * random_.axes(3)[0],
+                                        random_.uniform(2, 15) * random_.axes(3)[1]};
+    const double steps = random_.pick({0, 0, 4}), kink = random_.pick({0.0, 0.0, 0.5});
+    Field field{case_.mesh.dimension, 1, {}};
+    for (const Point& point : case_.mesh.points) {
+      const Point place = (1 / extent) * (point - low);
+      double value = std::sin(dot(waves[0], place)) + std::cos(dot(waves[1], place)) + shift;
+      if (kink > 0) value = std::abs(value) - kink;
+      field.values.push_back(steps > 0 ? std::round(steps * value) / steps : value);
+    }
+    return field;
+  }
+
+  /// A mesh that was cut must be a mesh, and must be adapted like any other. Cases with required
+  /// entities, which may not be cut, are left out.
+  void check_level_set() {
+    for (const auto& [name, list] : case_.mesh.lists)
+      if (name.starts_with("Required") && !list.empty()) return;
+    prefix_ = "level set: ";
+    write_field(folder_ / "phi.sol", level_set());
+    std::vector<std::string> words = {"adapt",     "in.mesh",   "-ls",     "-sol",
+                                      "phi.sol",   "-noinsert", "-noswap", "-nomove",
+                                      "--threads", "2",         "-o",      "cut.mesh"};
+    const auto is_size = [](const std::string& word) { return word == "-hsiz" || word == "-A"; };
+    const bool has_size = std::any_of(case_.options.begin(), case_.options.end(), is_size);
+    if (case_.metric && !has_size) words.insert(words.end(), {"-met", "in.sol"});
+    for (const char* option : {"-hmin", "-hmax"}) {  // which a metric may need
+      const auto at = std::find(case_.options.begin(), case_.options.end(), option);
+      if (at != case_.options.end()) words.insert(words.end(), {at[0], at[1]});
+    }
+    if (case_.promise.unlisted_boundary) words.push_back("--complete-boundary");
+    if (!run_program(words)) return;
+    const Mesh cut = read_mesh(folder_ / "cut.mesh");
+    for (const std::string& fault : check_structure(cut, case_.promise.unlisted_boundary))
+      fail(Verdict::wrong, fault);
+    if (!adapt("cut", "cut.out", "2", case_.options)) return;
+    for (const std::string& fault :
+         check_all(cut, read_mesh(folder_ / "cut.out.mesh"), case_.promise))
+      fail(Verdict::wrong, fault);
     prefix_.clear();
   }
 

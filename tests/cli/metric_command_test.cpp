@@ -199,7 +199,7 @@ TEST(MetricCommand, TellsWhatIsWrongWithACommandLine) {
     EXPECT_EQ(outcome.status, 2) << words;
     EXPECT_TRUE(contains(outcome.err, part)) << words << ": " << outcome.err;
   };
-  expect("", "expected make, size, implied, intersect, scale, bound or grade, found nothing");
+  expect("", "expected make, size, distance, implied, intersect, scale, bound or grade, found nothing");
   expect("mak a.mesh a.sol -o b.sol", "found 'mak'");
   expect("make a.mesh -o b.sol --error 1", "expected a mesh and a field, found 1 file");
   expect("implied a.mesh a.sol -o b.sol", "expected a mesh, found 2 files");
@@ -303,6 +303,65 @@ TEST(MetricCommand, SaysWhatIsWrongWithPlaces) {
   EXPECT_TRUE(
       contains(folder.run("metric bound waves2d.mesh waves2d.sol -hmin 1 --on 1:1 -o s.sol").err,
                "option --on: bound takes none"));
+}
+
+/// A disk of radius 0.5 with reference 3 in a square, with a name.
+AnyMesh disk_in_square() {
+  AnyMesh mesh = meshadapt::box_mesh<2>({2, 2}, {16, 16});
+  for (std::size_t e = 0; e < mesh.triangles.size(); ++e) {
+    double most = 0;
+    for (const std::uint32_t v : mesh.triangles.vertices[e])
+      for (std::size_t k = 0; k < 2; ++k)
+        most = std::max(most, std::abs(mesh.coordinates[2 * v + k] - 1));
+    mesh.triangles.reference[e] = most < 0.51 ? 3 : 2;
+  }
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    double* const x = &mesh.coordinates[2 * v];
+    const double far = std::max(std::abs(x[0] - 1), std::abs(x[1] - 1));
+    if (far > 0.51 || far == 0) continue;
+    const double scale = far / std::hypot(x[0] - 1, x[1] - 1);
+    for (std::size_t k = 0; k < 2; ++k) x[k] = 1 + scale * (x[k] - 1);
+  }
+  mesh.names = {{2, 3, "disk"}};
+  return mesh;
+}
+
+TEST(MetricCommand, WritesSignedDistances) {
+  const Folder folder;
+  const AnyMesh mesh = disk_in_square();
+  meshadapt::write_mesh(folder.path() / "disk.msh", mesh);
+  const Outcome made = folder.run("metric distance disk.msh --inside disk -hausd 0.01 -o phi.sol");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(contains(made.out, "distances from -0.5 to 0.914")) << made.out;
+  ASSERT_EQ(folder.run("metric distance disk.msh --inside 3 -hausd 0.01 -o phi.vtu").status, 0);
+  const AnyField field = meshadapt::read_field(folder.path() / "phi.sol");
+  ASSERT_EQ(field.types, std::vector{AnyField::Type::scalar});
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    EXPECT_NEAR(field.values[v],
+                std::hypot(mesh.coordinates[2 * v] - 1, mesh.coordinates[2 * v + 1] - 1) - 0.5,
+                2e-3);
+  const auto with = meshadapt::read_mesh_with_fields(folder.path() / "phi.vtu");
+  ASSERT_EQ(with.fields.size(), 1U);
+  EXPECT_EQ(with.fields[0].name, "distance");
+  struct Line {
+    const char *words, *text;
+  };
+  for (const auto& [words, text] : std::vector<Line>{
+           {"", "distance: expected --inside with a region"},
+           {"--inside 3 -hmin 1", "option -hmin: distance takes none"},
+           {"--inside 3 --near point:0,0:1", "option --near: distance takes none"},
+           {"--inside 3 -hausd -1", "option -hausd: "},
+           {"--inside 9", "no element has the reference 9"},
+           {"--inside wall", "expected a name that the mesh has, one of disk; found 'wall'"},
+           {"--inside 2 --inside 3", "expected facets between elements inside and others"}}) {
+    const Outcome outcome =
+        folder.run("metric distance disk.msh " + std::string(words) + " -o no.sol");
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, text)) << words << ": " << outcome.err;
+  }
+  EXPECT_FALSE(folder.has("no.sol"));
+  EXPECT_TRUE(contains(folder.run("metric implied disk.msh -hausd 1 -o no.sol").err,
+                       "option -hausd: implied takes none"));
 }
 
 }  // namespace

@@ -105,6 +105,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"adapt",
              "adapt s.mesh -sol s.sol --field s.sol --vtu o.vtu --json o.json --threads 1"},
         Case{"adapt_in_3d", "adapt t.mesh -hsiz 0.7 -hausd 0.01 -hgrad 1.5 --threads 1"},
+        Case{"adapt_along_a_level_set",
+             "adapt s.mesh -ls 0.5 -sol s.sol -hsiz 0.5 -hausd 0.1 -v 0 --threads 1"},
         Case{"adapt_on_two_threads", "adapt s.mesh -hsiz 0.3 --threads 2"},
         Case{"metric", "metric make s.mesh s.sol --complexity 30 -o o.sol --threads 1"},
         Case{"info", "info s.mesh -sol s.sol --json o.json --threads 1"},

@@ -65,7 +65,7 @@ forbid("std::(atomic|mutex|shared_mutex|thread|jthread|async|call_once)|__atomic
 forbid("<(csignal|signal\\.h)>|sigaction|std::signal" "signals stay inside runtime" ${above_runtime})
 
 # The floors of mesh adaptation, lowest first. Of rooms on one floor neither includes the other.
-set(floors core mesh metric io,transfer,geometry checks,operators adapt cli)
+set(floors core mesh metric io,transfer,geometry checks,operators,levelset adapt cli)
 set(level 0)
 foreach(floor IN LISTS floors)
   string(REPLACE "," ";" rooms ${floor})
@@ -82,7 +82,8 @@ foreach(floor IN LISTS floors)
   endforeach()
   math(EXPR level "${level} + 1")
 endforeach()
-foreach(place IN ITEMS core/simplex mesh/any_mesh mesh/mesh_arrays mesh/adapt_options io/files)
+foreach(place IN ITEMS core/simplex mesh/any_mesh mesh/mesh_arrays mesh/adapt_options io/files
+    io/level_set_references)
   string(REPLACE "/" ";" parts ${place})
   list(GET parts 0 room)
   list(GET parts 1 name)

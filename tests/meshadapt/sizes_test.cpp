@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/level_set_references.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -330,6 +331,34 @@ TEST(LocalSizes, BoundSizesWhereTheirEntitiesAre) {
       EXPECT_NEAR(found, expected, 1e-9) << "vertex " << v;
     }
   }
+}
+
+TEST(LevelSetReferences, AreReadFromMmgsFiles) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& text, Warnings* warnings = nullptr) {
+    test::put_bytes(folder / "a.mmg2d", text);
+    return read_level_set_references(folder / "a.mmg2d", warnings);
+  };
+  Warnings warnings;
+  const auto found = read(
+      "Parameters 1\n1 Edge 1 2 3\nlsReferences # by hand\n2\n3 NoSplit\n-2 1 5\n"
+      "LSBaseReferences\n2\n4 5\n",
+      &warnings);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].reference, 3);
+  EXPECT_FALSE(found[0].split);
+  EXPECT_EQ(found[1].reference, -2);
+  EXPECT_TRUE(found[1].split);
+  EXPECT_EQ(found[1].minus, 1);
+  EXPECT_EQ(found[1].plus, 5);
+  EXPECT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(read("Parameters 0").empty());
+  for (const char* text :
+       {"LSReferences", "LSReferences -1", "LSReferences 1\n1", "LSReferences 1\n1 2",
+        "LSReferences 1\n1 nosplitt", "LSReferences 1\n1 2 x", "LSReferences 1\nx nosplit",
+        "LSReferences 2\n1 nosplit\n1 2 3", "LSReferences 1\n1 nosplit\n2 3 4",
+        "LSReferences 99999999999999999\n1 2 3", "LSBaseReferences 2\n1"})
+    EXPECT_THROW(read(text), InputError) << text;
 }
 
 TEST(LocalSizes, AreReadFromMmgsFiles) {

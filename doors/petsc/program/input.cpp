@@ -78,6 +78,10 @@ Input read_words(const Arguments& arguments) {
   const bool is_gathered = input.form == Form::gathered;
   input.job = cli::adapt_job(arguments, is_gathered ? std::optional<fs::path>()
                                                     : fs::path(given).replace_extension(".vtu"));
+  if (input.job.level_set)
+    throw cli::UsageError(
+        "option -ls: expected none with several processes, found one; cut the mesh with `ductile "
+        "adapt -ls` first");
   input.output = is_gathered ? input.job.output : given;
   return input;
 }

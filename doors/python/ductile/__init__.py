@@ -15,6 +15,7 @@ the index.
 from ._build import InputWarning
 from ._ductile import Cancelled, Error, InputError, Report
 from ._ductile import version as __version__
+from ._cut import Cut
 from ._draw import draw
 from ._files import box, read, read_field, save_field, transfer
 from ._geometry import Geometry
@@ -25,7 +26,7 @@ from ._metric import (bound, complexity, full, grade, implied, intersect, metric
 from ._size import Size
 
 __all__ = [
-    "Cancelled", "Error", "Geometry", "Info", "InputError", "InputWarning", "Mesh", "Origin", "Report", "Size",
+    "Cancelled", "Cut", "Error", "Geometry", "Info", "InputError", "InputWarning", "Mesh", "Origin", "Report", "Size",
     "__version__", "bound", "box", "complexity", "draw", "from_meshio", "from_vtk", "full", "grade", "implied",
     "info", "intersect", "metric", "packed", "read", "read_field", "save_field", "sizes", "transfer",
 ]

@@ -132,6 +132,31 @@ class GeometryData:
     def closest(self, points: _Floats, reach: float,
                 threads: Executor) -> tuple[_Floats, _Floats, _Ints]: ...
 
+class CutReport:
+    level: float
+    minus_volume: float
+    interface_facets: int
+    cut_elements: int
+    moved_vertices: int
+    removed_components: int
+    removed_volume: float
+    warnings: list[str]
+
+class CutOptions:
+    def __init__(self, level: float, references: tuple[int, int, int],
+                 materials: Sequence[tuple[int, bool, int, int]], least_component: float,
+                 keep_volume: Optional[float]) -> None: ...
+
+class CutData:
+    mesh: MeshData
+    value: _Floats
+    vertex_origins: tuple[_Ints, _Floats]
+    cell_origins: _Ints
+    facet_origins: _Ints
+    report: CutReport
+    def metric(self, metric: Optional[_Floats], threads: Executor) -> _Floats: ...
+    def add_surface(self, options: Options, threads: Executor) -> None: ...
+
 class SizeBounds:
     def __init__(self, smallest: float = ..., largest: float = ...,
                  anisotropy: float = ...) -> None: ...
@@ -189,6 +214,10 @@ def remesh(mesh: MeshData, metric: Optional[tuple[_Floats, FieldType]], options:
 def remesh_to_sizes(mesh: MeshData, sizes: Sizes, options: Options, threads: Executor,
                     progress: Optional[Callable[[str, int, int], Optional[bool]]],
                     ) -> tuple[MeshData, _Floats, Report]: ...
+def refine_to_level_set(mesh: MeshData, metric: Optional[tuple[_Floats, FieldType]],
+                        function: Callable[[_Floats], _Floats], tolerance: float, smallest: float,
+                        threads: Executor) -> tuple[MeshData, _Floats, Report]: ...
+def cut(mesh: MeshData, values: _Floats, options: CutOptions, threads: Executor) -> CutData: ...
 def solution_metric(mesh: MeshData, values: _Floats, options: SolutionMetricOptions,
                     threads: Executor) -> tuple[_Floats, MetricFit]: ...
 def implied(mesh: MeshData) -> _Floats: ...
@@ -200,4 +229,6 @@ def grade(mesh: MeshData, metric: _Floats, factor: float) -> _Floats: ...
 def origins(before: MeshData, after: MeshData) -> tuple[_Ints, _Ints, _Ints, _Ints, _Floats]: ...
 def transfer(before: MeshData, after: MeshData, values: _Floats,
              how: tuple[FieldType, bool, bool], threads: Executor) -> tuple[_Floats, TransferReport]: ...
+def signed_distance(mesh: MeshData, inside: Sequence[int], tolerance: float, ridge_angle: float,
+                    points: Optional[_Floats], threads: Executor) -> _Floats: ...
 def interpolate_at(mesh: MeshData, values: _Floats, points: _Floats) -> _Floats: ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Union
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from . import _ductile, _html, _interop
 from ._arrays import (component_count, converted, executor, field_type, finite, flag, floats, mapping,
                       megabytes, named, number, path_text, shown, text, whole)
 from ._build import KINDS, data_of, field, mesh_data, options_of, place_of, warn, with_required
+from ._cut import Cut, cut_of, materials_of, references_of
 from ._ductile import InputError
 from ._geometry import Geometry
 from ._metric import MetricLike, as_rows, as_tensors, full, packed
@@ -69,6 +70,8 @@ class Mesh:
     report : Report or None
         Of an adapted mesh, how the adaptation went; with a `Size`, the last one, with the seconds and
         warnings of all.
+    level_set : Cut or None
+        Of a mesh that `cut` made, what it has of the mesh before.
 
     Examples
     --------
@@ -103,6 +106,8 @@ class Mesh:
         self.report: Optional[_ductile.Report] = None
         self._source: Optional[_ductile.MeshData] = None
         self._tolerance = 0.0
+        self._cut: Optional[_ductile.CutData] = None
+        self.level_set: Optional[Cut] = None
         self._origin: Optional[Origin] = None
 
     def _state(self) -> dict[str, Any]:
@@ -241,7 +246,8 @@ class Mesh:
             than vertices have seen; a size at each vertex, ``(n,)``; or a metric tensor,
             ``(n, 3)`` in 2D and ``(n, 6)`` in 3D (m11 m12 m22 m13 m23 m33, as in files, not in the
             order of Mmg's own functions), or ``(n, d, d)``. By default the sizes that the mesh has,
-            within `hmin` and `hmax`, or those of `curved_sizes`.
+            within `hmin` and `hmax`, or those of `curved_sizes`. A mesh that `cut` made also takes
+            arrays for the mesh before, whose sizes are then the default.
         hsiz : float, optional
             The same as a number for `metric`, by Mmg's name.
         hmin, hmax : float, optional
@@ -256,8 +262,9 @@ class Mesh:
             How far curved boundaries may be from where they were; 0: they keep their facets, or
             with a `geometry` its own.
         geometry : Geometry, optional
-            What curved boundaries are like; by default what they are like in this mesh. In a loop,
-            pass that of the first mesh to every call.
+            What curved boundaries are like; by default what they are like in this mesh, and the
+            interface of a mesh that `cut` made like the level set. In a loop, pass that of the first
+            mesh to every call.
         ar : float, optional
             Facets that turn by as many degrees meet at a ridge, which stays.
         curved_sizes : bool, optional
@@ -327,11 +334,13 @@ class Mesh:
                            lock_boundary=flag(nosurf, "nosurf"),
                            memory_limit=megabytes(memory))
         runs = executor(threads)
+        if self._cut is not None and options.hausdorff_tolerance and geometry is None:
+            self._cut.add_surface(options, runs)
         if isinstance(metric, Size):
             with named(self.dim), metric._said_of_places():
                 result = _ductile.remesh_to_sizes(data, metric._sizes, options, runs, progress)
         else:
-            rows = None if metric is None else as_rows(Mesh._of(data), metric, runs)
+            rows = self._rows(data, metric, options.curved_sizes, runs)
             with named(self.dim):
                 result = _ductile.remesh(data, rows, options, runs, progress)
         out = Mesh._of(result[0])
@@ -339,6 +348,123 @@ class Mesh:
         out._source, out._tolerance = data, options.hausdorff_tolerance
         warn(out.report.warnings)
         return out
+
+    def cut(self, phi: Any, level: float = 0, *, minus: int = 3, plus: int = 2, interface: int = 10,
+            materials: Optional[Mapping[int, Optional[Sequence[int]]]] = None,
+            least_component: float = 0, keep_volume: Optional[float] = None,
+            threads: int = 0) -> Mesh:
+        """The mesh cut where a function is `level`.
+
+        The level set becomes facets. Elements close to it may be bad; `remesh` makes good ones, and
+        with `hausd` puts the interface on the curved surface of the function.
+
+        Parameters
+        ----------
+        phi : (n,) array_like
+            Values at the vertices. If nothing else is known, take signed distances.
+        level : float, optional
+        minus, plus, interface : int, optional
+            References of the cells where `phi` is lower and higher, and of the facets between them.
+            Facets inside that have the reference already, of an earlier cut, are dropped.
+        materials : dict of int to (int, int) or None, optional
+            For each reference of cells, those of its two sides, or None if it is not split.
+        least_component : float, optional
+            Connected parts of either side with less than this fraction of the volume become part of
+            the other side.
+        keep_volume : float, optional
+            `level` is changed so that the cells of lower values have this volume.
+        threads : int, optional
+            0: as many as there are cores. The mesh is the same, bit for bit, for any number.
+
+        Returns
+        -------
+        Mesh
+            With `level_set`; vertices that there were come first.
+
+        Raises
+        ------
+        InputError
+            For arrays and options that are wrong, and if a required entity would be cut.
+
+        Examples
+        --------
+        >>> phi = np.linalg.norm(mesh.points - 0.5, axis=1) - 0.3
+        >>> out = mesh.cut(phi).remesh(0.05, hausd=0.001)
+        """
+        values = finite(floats(phi, "phi"), "phi")
+        if values.shape != (len(self.points),):
+            raise InputError(f"phi: expected shape ({len(self.points)},), one value for each vertex, "
+                             f"found {values.shape}")
+        options = _ductile.CutOptions(
+            number(level, "level"), references_of(minus, plus, interface), materials_of(materials),
+            number(least_component, "least_component"),
+            None if keep_volume is None else number(keep_volume, "keep_volume"))
+        with named(self.dim):
+            data = _ductile.cut(self._data, values, options, executor(threads))
+        out = Mesh._of(data.mesh)
+        out._cut, out._source, out.level_set = data, self._data, cut_of(data)
+        warn(out.level_set.report.warnings)
+        return out
+
+    def refine_to(self, function: Callable[[np.ndarray], Any], tolerance: float,
+                  metric: Optional[MetricLike] = None, *, hmin: float = 0, threads: int = 0) -> Mesh:
+        """The mesh refined where a function is 0, so that `cut` finds its zero.
+
+        Parameters
+        ----------
+        function : callable
+            Values ``(n,)`` at points ``(n, d)``.
+        tolerance : float
+            Largest distance between the zeros of the function and of its linear interpolant. Films
+            and specks of that sign between vertices are resolved, too.
+        metric : float or array_like, optional
+            Sizes elsewhere, as in `remesh`; by default those that the mesh has.
+        hmin : float, optional
+            Edges are not divided below this; 0: `tolerance`.
+        threads : int, optional
+
+        Returns
+        -------
+        Mesh
+            With `metric`, `report` and `origin`, as `remesh` returns it.
+
+        Examples
+        --------
+        >>> mesh = mesh.refine_to(f, 0.001)
+        >>> out = mesh.cut(f(mesh.points)).remesh(0.1, hausd=0.001)
+        """
+        if not callable(function):
+            raise InputError(f"function: expected a function, found {shown(function)}")
+
+        def at(points: np.ndarray) -> np.ndarray:
+            values = finite(floats(function(points), "function"), "function")
+            if values.shape != (len(points),):
+                raise InputError(f"function: expected a value for each of {len(points)} points, found "
+                                 f"an array of shape {values.shape}")
+            return values
+
+        runs = executor(threads)
+        rows = None if metric is None else as_rows(self, metric, runs)
+        with named(self.dim):
+            result = _ductile.refine_to_level_set(
+                self._data, rows, at, number(tolerance, "tolerance"), number(hmin, "hmin"), runs)
+        out = Mesh._of(result[0])
+        out.metric, out.report = result[1:]
+        out._source = self._data
+        warn(out.report.warnings)
+        return out
+
+    def _rows(self, data: _ductile.MeshData, metric: Optional[MetricLike], curved_sizes: bool,
+              runs: _ductile.Executor) -> Any:
+        """A metric as C++ takes it; that of the mesh before a cut is carried."""
+        if self._cut is None or (metric is None and curved_sizes):
+            return None if metric is None else as_rows(Mesh._of(data), metric, runs)
+        before = Mesh._of(self._require_source())
+        if metric is None:
+            return self._cut.metric(None, runs), _ductile.FieldType.symmetric
+        if np.ndim(metric) > 0 and len(metric) == len(before.points) != len(self.points):
+            return self._cut.metric(as_tensors(before, metric), runs), _ductile.FieldType.symmetric
+        return as_rows(Mesh._of(data), metric, runs)
 
     @property
     def origin(self) -> Origin:
@@ -413,6 +539,49 @@ class Mesh:
         rows = values.reshape(len(values), component_count(values.shape))
         return _ductile.interpolate_at(self._data, rows, places).reshape(-1, *values.shape[1:])
 
+    def signed_distance(self, inside: Union[int, str, Iterable[Union[int, str]]], at: Any = None, *,
+                        hausd: float = 0, ar: float = 45, threads: int = 0) -> np.ndarray:
+        """The distance to the interface between some regions and the others, negative inside.
+
+        The interface is curved through its vertices, so that a level set that is moved and cut step
+        by step does not shrink. The boundary of the mesh is not part of it.
+
+        Parameters
+        ----------
+        inside : int, str, or several
+            References or names of the cells where the distance is negative.
+        at : (n, d) array_like or Mesh, optional
+            Points, or a mesh, at the vertices of which distances are wanted; by default this mesh.
+            On its interface they are exactly 0.
+        hausd : float, optional
+            How far the curved interface may be from its facets; 0: a tenth of their edges.
+        ar : float, optional
+            Facets that turn by as many degrees meet at a ridge.
+        threads : int, optional
+
+        Returns
+        -------
+        (n,) ndarray
+
+        Examples
+        --------
+        >>> phi = mesh.signed_distance(inside=3)
+        """
+        keys = [inside] if isinstance(inside, (int, str, np.integer)) else inside
+        if not isinstance(keys, (list, tuple, set)) and np.ndim(keys) != 1:
+            raise InputError(f"inside: expected references or names of cells, found {shown(inside)}")
+        refs = [ref for key in keys
+                for ref in (self._references_of(key, self.dim) if isinstance(key, str) else
+                            [whole(key, "inside", -2**31, 2**31 - 1)])]
+        places = at.points if isinstance(at, Mesh) else at
+        if places is not None:
+            places = finite(floats(places, "at"), "at")
+            if places.ndim != 2 or places.shape[1] != self.dim:
+                raise InputError(f"at: expected shape (n, {self.dim}), found {places.shape}")
+        with named(self.dim):
+            return _ductile.signed_distance(self._data, refs, number(hausd, "hausd"),
+                                            number(ar, "ar"), places, executor(threads))
+
     # ---- Measures and checks ----
 
     def quality(self, M: Optional[MetricLike] = None) -> np.ndarray:
@@ -426,7 +595,7 @@ class Mesh:
         Entities are counted from 1 there, as in a file. Of an adapted mesh the domain and its topology
         are compared with those of the mesh that it was made from as well.
         """
-        if self._source is None:
+        if self._source is None or self._cut is not None:
             return _ductile.check(self._data)
         return _ductile.check_adapted(self._source, self._data, self._tolerance)
 

@@ -3,15 +3,18 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "bindings.hpp"
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/geometry.hpp"
+#include "ductile/meshadapt/level_set_sizes.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 
@@ -108,6 +111,34 @@ py::tuple remesh_to_sizes(const AnyMesh& mesh, const meshadapt::Sizes& given,
   return adapted_by(mesh, adapt, given_options, threads, progress);
 }
 
+/// Values of a Python function at points; takes the interpreter's lock.
+std::vector<double> values_at(const py::function& function, std::span<const double> coordinates,
+                              int dimension) {
+  const py::gil_scoped_acquire locked;
+  const auto points = signed_size(coordinates.size()) / dimension;
+  const py::object values =
+      function(take(std::vector(coordinates.begin(), coordinates.end()), {points, dimension}));
+  return copied(values.cast<Given<double>>());
+}
+
+py::tuple refine_to_level_set(const AnyMesh& mesh, const GivenMetric& metric,
+                              const py::function& function,
+                              const meshadapt::LevelSetSizesOptions& sizes,
+                              const runtime::ExecutorOptions& threads) {
+  std::optional<AnyField> given;
+  if (metric)
+    given = field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric");
+  const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
+    const AnyField wanted =
+        given ? meshadapt::metric_of(*given, mesh) : meshadapt::default_metric(executor, mesh);
+    const auto at = [&](std::span<const double> coordinates) {
+      return values_at(function, coordinates, mesh.dimension);
+    };
+    return meshadapt::refine_to_level_set(executor, mesh, wanted, at, sizes, options);
+  };
+  return adapted_by(mesh, adapt, {}, threads, py::none());
+}
+
 void bind_options(py::module_& module) {
   py::class_<AdaptOptions>(module, "Options")
       .def(py::init<>())
@@ -174,6 +205,13 @@ void bind_adapt(py::module_& module) {
   bind_report(module);
   module.def("remesh", &remesh);
   module.def("remesh_to_sizes", &remesh_to_sizes);
+  module.def("refine_to_level_set",
+             [](const AnyMesh& mesh, const GivenMetric& metric, const py::function& function,
+                double tolerance, double smallest, const runtime::ExecutorOptions& threads) {
+               return refine_to_level_set(
+                   mesh, metric, function,
+                   {.tolerance = tolerance, .smallest_size = smallest, .most_passes = 10}, threads);
+             });
 }
 
 }  // namespace ductile::python

@@ -27,7 +27,8 @@ using Given = py::array_t<T, py::array::c_style>;
 
 void bind_mesh(py::module_& module);
 void bind_adapt(py::module_& module);
-void bind_geometry(py::module_& module);  // before bind_adapt(), whose options refer to it
+void bind_geometry(py::module_& module);   // before bind_adapt(), whose options refer to it
+void bind_level_set(py::module_& module);  // after bind_adapt()
 void bind_metric(py::module_& module);
 void bind_transfer(py::module_& module);
 

@@ -1,5 +1,6 @@
 /// @file
-/// Geometry: a smooth model of curved boundaries, made once and passed to every adaptation.
+/// Geometry: a smooth model of curved boundaries, made once and passed to every adaptation; and
+/// distances to interfaces.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,12 +8,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "bindings.hpp"
 
 #include "ductile/meshadapt/geometry.hpp"
+#include "ductile/meshadapt/signed_distance.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::python {
@@ -76,6 +79,18 @@ py::tuple closest(const Geometry& geometry, const Given<double>& points, double 
                         take(std::move(references)));
 }
 
+/// At points, or at the vertices if there are none.
+py::array signed_distance(const meshadapt::AnyMesh& mesh,
+                          const meshadapt::SignedDistanceOptions& options,
+                          const std::optional<Given<double>>& points,
+                          const runtime::ExecutorOptions& threads) {
+  std::span<const double> at;
+  if (points) at = {points->data(), static_cast<std::size_t>(points->size())};
+  return take(work(threads, [&](const runtime::Executor& executor) {
+    return meshadapt::signed_distance(executor, mesh, options, at);
+  }));
+}
+
 }  // namespace
 
 void bind_geometry(py::module_& module) {
@@ -84,6 +99,12 @@ void bind_geometry(py::module_& module) {
       .def_property_readonly("dimension", &Geometry::dimension)
       .def_property_readonly("tolerance", &Geometry::tolerance)
       .def("closest", &closest);
+  module.def("signed_distance", [](const meshadapt::AnyMesh& mesh, std::vector<std::int32_t> inside,
+                                   double tolerance, double ridge_angle,
+                                   const std::optional<Given<double>>& points,
+                                   const runtime::ExecutorOptions& threads) {
+    return signed_distance(mesh, {std::move(inside), tolerance, ridge_angle}, points, threads);
+  });
 }
 
 }  // namespace ductile::python

@@ -41,6 +41,7 @@ PYBIND11_MODULE(_ductile, module) {
   bind_mesh(module);
   bind_geometry(module);
   bind_adapt(module);
+  bind_level_set(module);
   bind_metric(module);
   bind_transfer(module);
 }

@@ -289,6 +289,30 @@ def test_geometry_has_points_and_normals():
         polygon.remesh(0.1, geometry=polygon)
 
 
+def test_signed_distances_are_those_of_the_smooth_interface(dim):
+    box = ductile.box((2,) * dim, (16 if dim == 2 else 12,) * dim)
+    x = box.points - 1
+    far = np.maximum(np.abs(x).max(axis=1), 1e-30)
+    out = np.maximum(2 * far - 1, 0)  # cubes are balls up to half of the extent
+    round_ = 0.8 * np.minimum(far, 0.5) / np.maximum(np.linalg.norm(x, axis=1), 1e-30)
+    x = x * ((1 - out) * round_ + out)[:, None]
+    refs = np.where((np.abs(box.points[box.cells].mean(axis=1) - 1) < 0.5).all(axis=1), 3, 2)
+    mesh = ductile.Mesh(x, box.cells, refs=refs, names={"ball": (dim, 3)})
+    phi = mesh.signed_distance(3)
+    assert phi == pytest.approx(np.linalg.norm(x, axis=1) - 0.4, abs=2e-3)
+    assert (phi == 0).sum() == (abs(np.linalg.norm(x, axis=1) - 0.4) < 1e-12).sum()
+    assert (phi == mesh.signed_distance(["ball"], threads=1)).all()
+    assert phi == pytest.approx(mesh.signed_distance((3,), mesh), abs=1e-12)
+    assert -phi == pytest.approx(mesh.signed_distance({2}), abs=1e-3)
+    points = np.random.default_rng(5).uniform(-1.2, 1.2, (500, dim))
+    found = mesh.signed_distance(np.array([3]), points, hausd=0.01)
+    assert found == pytest.approx(np.linalg.norm(points, axis=1) - 0.4, abs=2e-3)
+    for inside, message in ((7, "no element has the reference 7"), ("box", "name 'box'"),
+                            ([2, 3], "expected facets between elements inside and others")):
+        with pytest.raises(ductile.InputError, match=message):
+            mesh.signed_distance(inside)
+
+
 def rounded(x, radius=1.0):
     """The closest point of the unit circle or sphere."""
     return radius * x / np.linalg.norm(x)

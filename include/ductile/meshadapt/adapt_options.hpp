@@ -51,6 +51,10 @@ struct SurfaceFunction {
   /// deterministic, and return its own results unchanged up to rounding. Called by several threads
   /// at a time. Its exceptions leave the function that needed it.
   std::function<std::array<double, 3>(const std::array<double, 3>&)> closest;
+  /// The function does not know the surface everywhere: where its result is not a number, or is
+  /// farther away than the Hausdorff tolerance, the model of the mesh counts. Otherwise a result
+  /// that is too far away is an error.
+  bool approximate = false;
 };
 
 /// How a Mesh is made from a file's mesh: which parts of its boundary may change.

@@ -41,6 +41,13 @@ std::vector<Vector<Dim>> recover_gradient(const runtime::Executor& executor,
                                           std::span<const double> value_of,
                                           Recovery recovery = Recovery::least_squares);
 
+/// The same by least squares at these vertices alone: [index in `at`].
+template <int Dim>
+std::vector<Vector<Dim>> recover_gradient_at(const runtime::Executor& executor,
+                                             const FixedMesh<Dim>& mesh,
+                                             std::span<const double> value_of,
+                                             std::span<const VertexId> at);
+
 /// Second derivatives at the vertices: symmetric tensors, in general not metrics (see
 /// hessian_metric()). 0 in directions in which the mesh is too coarse to tell.
 template <int Dim>
@@ -59,6 +66,14 @@ extern template std::vector<Vector<2>> recover_gradient(const runtime::Executor&
 extern template std::vector<Vector<3>> recover_gradient(const runtime::Executor&,
                                                         const FixedMesh<3>&,
                                                         std::span<const double>, Recovery);
+extern template std::vector<Vector<2>> recover_gradient_at(const runtime::Executor&,
+                                                           const FixedMesh<2>&,
+                                                           std::span<const double>,
+                                                           std::span<const VertexId>);
+extern template std::vector<Vector<3>> recover_gradient_at(const runtime::Executor&,
+                                                           const FixedMesh<3>&,
+                                                           std::span<const double>,
+                                                           std::span<const VertexId>);
 extern template std::vector<Metric<2>> recover_hessian(const runtime::Executor&,
                                                        const FixedMesh<2>&, std::span<const double>,
                                                        Recovery);

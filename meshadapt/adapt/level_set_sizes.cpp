@@ -1,0 +1,240 @@
+#include "ductile/meshadapt/level_set_sizes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/first_bad.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
+#include "mesh/wording.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+using Edge = std::array<VertexId, 2>;
+
+std::vector<double> values_at(const Executor& executor, const PointFunction& function,
+                              const std::vector<double>& coordinates, int dimension) {
+  std::vector<double> values = function(coordinates);
+  const std::size_t count = coordinates.size() / static_cast<std::size_t>(dimension);
+  if (values.size() != count)
+    throw InputError("level set: expected " + std::to_string(count) +
+                     " values, one for each point, found " + std::to_string(values.size()));
+  const std::size_t bad =
+      first_bad(executor, count, [&](std::size_t i) { return !std::isfinite(values[i]); });
+  if (bad == no_index) return values;
+  std::string point;
+  for (int axis = 0; axis < dimension; ++axis)
+    point +=
+        (axis == 0 ? "(" : ", ") + number(coordinates[bad * static_cast<std::size_t>(dimension) +
+                                                      static_cast<std::size_t>(axis)]);
+  throw InputError("level set: expected a finite value at " + point + "), found " +
+                   number(values[bad]));
+}
+
+/// The sizes that edges of a mesh need for the zero of a function to be resolved.
+template <int Dim>
+class Resolution {
+ public:
+  Resolution(const Executor& executor, const AnyMesh& mesh, const PointFunction& function,
+             const LevelSetSizesOptions& options)
+      : executor_(executor),
+        mesh_(make_fixed_mesh<Dim>(executor, mesh)),
+        options_(options),
+        value_of_(values_at(executor, function, mesh.coordinates, Dim)),
+        steepest_of_(steepest()),
+        edges_(edges_near_zero()),
+        value_in_(values_at(executor, function, middles(), Dim)) {}
+
+  /// Refines metrics at the ends of edges where the zero is not resolved. Are there any that the
+  /// metrics did not ask to be that short?
+  bool refine(std::vector<Metric<Dim>>& metric_of) const {
+    constexpr double finer = 1.2;  // of squared lengths
+    std::vector<double> size_of(metric_of.size(), std::numeric_limits<double>::infinity());
+    bool any = false;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const double size = size_for(e);
+      const Vector<Dim> along = direction(edges_[e]);
+      const double square = dot(along, along) / (size * size);
+      for (const VertexId v : edges_[e])
+        if (square > finer * squared_length(metric_of[v], along)) {
+          size_of[v] = std::min(size_of[v], size);
+          any = true;
+        }
+    }
+    runtime::parallel_for(executor_, metric_of.size(), [&](std::size_t v) {
+      if (std::isfinite(size_of[v]))
+        metric_of[v] = intersect(metric_of[v], isotropic<Dim>(size_of[v]));
+    });
+    return any;
+  }
+
+ private:
+  Vector<Dim> direction(const Edge& edge) const {
+    return mesh_.position_of[edge[1]] - mesh_.position_of[edge[0]];
+  }
+
+  /// [vertex], the largest slope of the linear interpolant in the elements around.
+  std::vector<double> steepest() const {
+    std::vector<double> slope_of(mesh_.element_count()), steepest_of(mesh_.vertex_count());
+    runtime::parallel_for(executor_, slope_of.size(), [&](std::size_t e) {
+      const auto hat = hat_gradients<Dim>(mesh_.points(static_cast<ElementId>(e)));
+      Vector<Dim> slope;
+      for (std::size_t i = 0; i <= Dim; ++i) slope += value_of_[mesh_.corners_of[e][i]] * hat[i];
+      slope_of[e] = norm(slope);
+    });
+    runtime::parallel_for(executor_, steepest_of.size(), [&](std::size_t v) {
+      for (const ElementId e : mesh_.elements_of(static_cast<VertexId>(v)))
+        steepest_of[v] = std::max(steepest_of[v], slope_of[e]);
+    });
+    return steepest_of;
+  }
+
+  /// Edges of elements in which the function may be 0: sorted, each once.
+  std::vector<Edge> edges_near_zero() const {
+    auto edges = runtime::parallel_collect<Edge>(
+        executor_, mesh_.element_count(), [&](std::size_t e, auto&& append) {
+          const Corners<Dim>& corners = mesh_.corners_of[e];
+          double least = std::numeric_limits<double>::infinity(), steepest = 0, longest = 0;
+          for (const VertexId v : corners) {
+            least = std::min(least, std::abs(value_of_[v]));
+            steepest = std::max(steepest, steepest_of_[v]);
+          }
+          for (std::size_t k = 0; k < Simplex<Dim>::edges; ++k)
+            longest = std::max(longest, norm(direction(ends_of_edge<Dim>(corners, k))));
+          for (std::size_t k = 0; k < Simplex<Dim>::edges && least <= steepest * longest; ++k) {
+            const auto [a, b] = ends_of_edge<Dim>(corners, k);
+            append(Edge{std::min(a, b), std::max(a, b)});
+          }
+        });
+    runtime::parallel_sort(executor_, std::span(edges));
+    edges.resize(runtime::parallel_unique(executor_, std::span(edges)));
+    return {edges.begin(), edges.end()};
+  }
+
+  std::vector<double> middles() const {
+    std::vector<double> coordinates(edges_.size() * Dim);
+    runtime::parallel_for(executor_, edges_.size(), [&](std::size_t e) {
+      const Vector<Dim> middle =
+          0.5 * (mesh_.position_of[edges_[e][0]] + mesh_.position_of[edges_[e][1]]);
+      std::copy_n(middle.x.begin(), Dim, &coordinates[e * Dim]);
+    });
+    return coordinates;
+  }
+
+  /// Infinite where the edge may be as long as it is. An edge between ends of different signs is
+  /// divided by how far the function is from linear. One between ends of the same sign is halved if
+  /// the function has the other sign in the middle, or has a kink and, falling as steeply as around
+  /// there, could have it in one of the halves.
+  double size_for(std::size_t edge) const {
+    constexpr double kink = 0.1;  // a bend of the function that is sharper, over the length
+    constexpr double half = 0.4;  // because edges may become longer than the metric asks for
+    const double infinite = std::numeric_limits<double>::infinity();
+    const auto [from, to] = edges_[edge];
+    const double a = value_of_[from], b = value_of_[to], middle = value_in_[edge];
+    const double steepest = std::max(steepest_of_[from], steepest_of_[to]);
+    const double length = norm(direction(edges_[edge]));
+    if (!(steepest > 0)) return infinite;
+    const double off = std::abs(middle - 0.5 * (a + b)) / steepest;
+    double share = 1;
+    if ((a < 0) != (b < 0)) {
+      if (off > options_.tolerance)
+        share = std::max(half, 2 * half * std::sqrt(options_.tolerance / off));
+    } else if ((middle < 0) != (a < 0)) {
+      share = half;
+    } else if (off > std::max(options_.tolerance, kink * length)) {
+      const double nearer = std::min(std::abs(a), std::abs(b));
+      if (nearer + std::abs(middle) <= 0.5 * steepest * length) share = half;
+    }
+    const double least = options_.smallest_size > 0 ? options_.smallest_size : options_.tolerance;
+    return share < 1 ? std::max(least, share * length) : infinite;
+  }
+
+  const Executor& executor_;
+  FixedMesh<Dim> mesh_;
+  const LevelSetSizesOptions& options_;
+  std::vector<double> value_of_;     // [vertex]
+  std::vector<double> steepest_of_;  // [vertex]
+  std::vector<Edge> edges_;
+  std::vector<double> value_in_;  // [edge], in the middle
+};
+
+/// Makes a metric finer where the zero is not resolved; see Resolution::refine().
+struct Wanted {
+  const PointFunction& function;
+  const LevelSetSizesOptions& options;
+
+  bool refine(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
+    return mesh.dimension == 2 ? refine_in<2>(executor, mesh, metric)
+                               : refine_in<3>(executor, mesh, metric);
+  }
+
+ private:
+  template <int Dim>
+  bool refine_in(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
+    auto metric_of = tensors_of<Dim>(executor, metric);
+    if (!Resolution<Dim>(executor, mesh, function, options).refine(metric_of)) return false;
+    metric = symmetric_field(executor, metric_of, metric.name);
+    return true;
+  }
+};
+
+/// A metric that is fine enough for the input, made finer on each adapted mesh.
+class LevelSetSizes : public MetricSource {
+ public:
+  LevelSetSizes(const AnyField& first, const Wanted& wanted) : first_(first), wanted_(wanted) {}
+
+  const AnyField* next(const AdaptState& state) override {
+    if (state.pass == 0) return &first_;
+    metric_ = state.adapted().metric;
+    is_resolved_ = !wanted_.refine(state.executor, state.mesh(), metric_);
+    return is_resolved_ || state.pass >= wanted_.options.most_passes ? nullptr : &metric_;
+  }
+
+  bool is_resolved() const { return is_resolved_; }
+
+ private:
+  const AnyField& first_;
+  const Wanted& wanted_;
+  AnyField metric_;
+  bool is_resolved_ = false;
+};
+
+}  // namespace
+
+AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
+                                const AnyField& metric, const PointFunction& function,
+                                const LevelSetSizesOptions& sizes, const AdaptOptions& options) {
+  if (!function) throw InputError("level set: expected a function, found none");
+  if (!(sizes.tolerance >= smallest_size && sizes.tolerance <= largest_size))
+    throw InputError("level set: expected a tolerance from 1e-75 to 1e75, found " +
+                     number(sizes.tolerance));
+  if (!(sizes.smallest_size >= 0 && sizes.smallest_size <= largest_size))
+    throw InputError("level set: expected a smallest size from 0 to 1e75, found " +
+                     number(sizes.smallest_size));
+  AnyField finer = metric_of(metric, mesh, {options.smallest_size, options.largest_size});
+  const Wanted wanted{function, sizes};
+  if (!wanted.refine(executor, mesh, finer)) return {mesh, finer, {}};
+  LevelSetSizes source(finer, wanted);
+  AdaptedMesh adapted = adapt(executor, mesh, source, options);
+  if (!source.is_resolved())
+    adapted.report.warnings.push_back(name_of(mesh) + ": the level set is not resolved after " +
+                                      std::to_string(sizes.most_passes) +
+                                      " passes; allow more, or a larger tolerance");
+  return adapted;
+}
+
+}  // namespace ductile::meshadapt
