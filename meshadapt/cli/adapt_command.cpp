@@ -24,6 +24,7 @@
 #include "files.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
+#include "move_command.hpp"
 #include "recovery_option.hpp"
 #include "run_in_team.hpp"
 #include "size_options.hpp"
@@ -42,7 +43,7 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 36> own_options{{
+constexpr std::array<Option, 37> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
@@ -66,6 +67,8 @@ constexpr std::array<Option, 36> own_options{{
     {"-nomove", "", "moves no vertex"},
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
+    {"-lag", "N",
+     "moves the mesh by the vectors of -sol (ductile help move); 0: without adapting it, 1, 2: with"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
     {"-geometry", "FILE",
@@ -432,6 +435,7 @@ int work(const Executor& executor, Job job) {
 }
 
 int run(const Arguments& arguments) {
+  if (arguments.has("-lag")) return run_lag(arguments);
   Job job = adapt_job(arguments);
   check_files(job);
   return run_in_team({.threads = job.threads, .deterministic = !job.racing},

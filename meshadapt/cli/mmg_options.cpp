@@ -7,9 +7,8 @@ namespace {
 struct Refused {
   std::string_view name, instead;
 };
-constexpr std::array<Refused, 9> refused{{
+constexpr std::array<Refused, 8> refused{{
     {"3dMedit", "Mmg's, not here: flat meshes of dimension 3 are read, and written in dimension 2"},
-    {"lag", "Mmg's, not here: meshes are not moved along displacements"},
     {"ls", "Mmg's, not here: level sets must be cut out before"},
     {"lssurf", "Mmg's, not here: level sets must be cut out before"},
     {"nreg", "Mmg's, not here: normals are not smoothed"},
