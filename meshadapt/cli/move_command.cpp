@@ -120,13 +120,13 @@ AnyField displacement_of(const MoveJob& job, const meshadapt::MeshWithFields& fi
   return field;
 }
 
-AnyField metric_of(const MoveJob& job, const Executor& executor, const AnyMesh& mesh,
+AnyField metric_of(const MoveJob& job, const AnyMesh& mesh,
                    meshadapt::Warnings& warnings) {
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
   if (job.metric_in)
     return read_metric(*job.metric_in, mesh, warnings,
                        {job.move.smallest_size, job.move.largest_size});
-  return meshadapt::default_metric(executor, mesh);
+  return meshadapt::implied_metric(mesh);
 }
 
 std::string summary(const MoveJob& job, const meshadapt::MovedMesh& moved) {
@@ -168,7 +168,7 @@ int work(const Executor& executor, MoveJob job) {
   const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
   const CarriedFields::Values fields = job.fields.read(file.mesh, warnings);
   const AnyField displacement = displacement_of(job, file, warnings);
-  const AnyField metric = metric_of(job, executor, file.mesh, warnings);
+  const AnyField metric = metric_of(job, file.mesh, warnings);
   job.move.metric = &metric;
   job.move.fields = fields.fields;
   job.move.carrying = {job.fields.interpolates() ? meshadapt::Carrying::by_value

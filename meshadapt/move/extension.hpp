@@ -28,22 +28,31 @@ class Extension {
 
  private:
   struct Entry {
-    VertexId vertex;
+    std::uint32_t place;  // a free vertex by its place among them, or a vertex given
     double weight;
+  };
+  /// Of conjugate gradients, [place].
+  struct Iterate {
+    Field value, rest, direction, product;
   };
 
   void add_row(const FixedMesh<Dim>& mesh, const Field& position_of, VertexId v,
                std::vector<Entry>& row) const;
-  /// K x at free vertex i, without what walls take.
+  /// What displacements of others ask for, [place].
+  Field demands(const Field& displacement_of) const;
+  /// Row i of the matrix times x, without what walls take.
   Vector<Dim> product(std::size_t i, const Field& x) const;
-  double sum(auto&& term) const;
+  /// The sum of a[i] . b[i] / diagonal[i].
+  double weighted(const Field& a, const Field& b) const;
+  /// Returns the new size of the rest.
+  double iterate(Iterate& now, double size) const;
 
   const runtime::Executor& executor_;
   const Walls<Dim>& walls_;
-  std::vector<VertexId> free_;
-  std::vector<std::size_t> first_;     // [free], and the end
-  runtime::UnsetVector<Entry> entry_;  // neighbours, with negative weights off the diagonal
-  std::vector<double> diagonal_;       // [free]
+  std::vector<VertexId> free_;                            // [place]
+  std::vector<std::size_t> first_, first_given_;          // [place], and the end
+  runtime::UnsetVector<Entry> free_entry_, given_entry_;  // negative weights, by row
+  std::vector<double> diagonal_, inverse_;                // [place]
 };
 
 extern template class Extension<2>;

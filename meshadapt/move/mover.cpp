@@ -25,11 +25,17 @@ namespace {
 /// How steps and adaptations are chosen.
 struct Steering {
   static constexpr double kept_quality = 0.6;  // see MoveOptions::keep_above
-  static constexpr double worse = 0.9;         // an element is adapted again below this times
-                                               // what adaptation could reach
+  static constexpr double worse = 0.99;        // elements below this times the quality that they
+                                               // came with are adapted
+  static constexpr double strained = 1.75;     // times remesh_below: strained elements are below,
+  static constexpr double much_worse = 0.8;    // and below this times the quality they came with
   static constexpr double growth = 1.5;        // of steps
   static constexpr int halvings = 10;          // of a step
-  static constexpr int tries = 4;              // to adapt where the way is blocked, each wider
+  static constexpr int polishings = 2;         // at the end
+  static constexpr double least_gain = 1.01;   // of the worst quality, by one of these
+  static constexpr double required_gradation = 2.3;  // sizes at facets that stay are their own;
+                                                     // Mmg's default
+  static constexpr int tries = 4;  // to adapt where the way is blocked, each wider
 };
 template <int Dim>
 constexpr int layers_around = Dim == 2 ? 4 : 3;  // that are adapted around bad elements
@@ -38,8 +44,7 @@ template <int Dim>
 MovingMesh<Dim> moving_mesh(const Executor& executor, const FixedMesh<Dim>& topology, AnyMesh mesh,
                             const MoveOptions& options) {
   MovingMesh<Dim> result;
-  const AnyField field =
-      options.metric ? metric_of(*options.metric, mesh) : default_metric(executor, mesh);
+  const AnyField field = options.metric ? metric_of(*options.metric, mesh) : implied_metric(mesh);
   const std::vector<Metric<Dim>> tensors = tensors_of<Dim>(executor, field);
   result.site_of.resize(mesh.vertex_count());
   parallel_for(executor, result.site_of.size(), [&](std::size_t v) {
@@ -69,6 +74,21 @@ std::vector<Vector<Dim>> displacements(const Executor& executor, const AnyMesh& 
   return vectors;
 }
 
+template <int Dim>
+double worst_quality(const AdaptedMesh& adapted) {
+  double worst = 1;
+  for (const auto& corners : elements_in<Dim>(adapted.mesh).vertices) {
+    std::array<Site<Dim>, Dim + 1> sites;
+    std::array<const Site<Dim>*, Dim + 1> corner;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      sites[i] = site_in<Dim>(adapted, corners[i]);
+      corner[i] = &sites[i];
+    }
+    worst = std::min(worst, quality<Dim>(corner));
+  }
+  return worst;
+}
+
 double chosen(double given, double in_2d, double in_3d, int dimension) {
   return given != 0 ? given : dimension == 2 ? in_2d : in_3d;
 }
@@ -88,10 +108,12 @@ Mover<Dim>::Mover(const Executor& executor, AnyMesh mesh, const AnyField& displa
   mesh_ = moving_mesh(executor, topology_, std::move(mesh), options);
   mesh_.path_of = paths_.path_of();
   mesh_.body_of = paths_.body_of();
+  mesh_.speed_of.resize(mesh_.site_of.size());
+  stride_ = paths_.first_stride();
   for (std::size_t e = 0; e < mesh_.is_held.size(); ++e)
     if (mesh_.body_of[e] != 0 && paths_.is_rigid(mesh_.body_of[e])) mesh_.is_held[e] = 1;
-  mesh_.tried_of.assign(mesh_.is_held.size(), -1);
   connect();
+  mesh_.came_with = mesh_.quality_of;
 }
 
 template <int Dim>
@@ -109,7 +131,6 @@ void Mover<Dim>::connect() {
   mesh_.quality_of.resize(topology_.element_count());
   parallel_for(executor_, mesh_.quality_of.size(), [&](std::size_t e) {
     mesh_.quality_of[e] = mesh_.quality(topology_.corners_of[e]);
-    if (mesh_.tried_of[e] < 0) mesh_.tried_of[e] = mesh_.quality_of[e];
   });
 }
 
@@ -124,11 +145,11 @@ MovedMesh Mover<Dim>::run() {
     }
     if (step(blocking)) {
       tries = 0;
-      if (!is_done() && std::ranges::count(blocking, 1) == 0) continue;
+      if (is_done() || std::ranges::count(blocking, 1) == 0) continue;
       mark_bad(blocking);
-      adapt_part(blocking, layers_around<Dim>);
+      adapt_part(blocking, layers_around<Dim>, 0);
     } else {
-      if (tries == Steering::tries || !adapt_part(blocking, layers_around<Dim> << tries)) {
+      if (tries == Steering::tries || !adapt_part(blocking, layers_around<Dim> << tries, 0)) {
         report_.stopped = "because " + place_of_first(blocking) + " would be flattened";
         break;
       }
@@ -140,15 +161,22 @@ MovedMesh Mover<Dim>::run() {
                 "expected to move bodies all the way, stopped at " + number(100 * share_) +
                 " % of it " + report_.stopped +
                 "; give a way that is free, or keep the mesh of that place (keep_partial)");
+  for (int times = 0; times < Steering::polishings; ++times) {
+    blocking.assign(topology_.element_count(), 0);
+    mark_bad(blocking);
+    if (!adapt_part(blocking, layers_around<Dim> << times, Steering::least_gain)) break;
+  }
   return finish();
 }
 
 template <int Dim>
 bool Mover<Dim>::step(Marks& blocking) {
-  Field position_of(mesh_.site_of.size()), move_of(position_of.size());
-  parallel_for(executor_, position_of.size(),
-               [&](std::size_t v) { position_of[v] = mesh_.site_of[v].position; });
   double length = std::min(stride_, 1 - share_);
+  Field position_of(mesh_.site_of.size()), move_of(position_of.size());
+  parallel_for(executor_, position_of.size(), [&](std::size_t v) {
+    position_of[v] = mesh_.site_of[v].position;
+    move_of[v] = 2 * length * mesh_.speed_of[v];
+  });
   const Walls<Dim> walls(mesh_.any, position_of);
   Marks is_free = paths_.within_reach(executor_, position_of, share_, share_ + length);
   parallel_for(executor_, is_free.size(), [&](std::size_t i) {
@@ -161,7 +189,7 @@ bool Mover<Dim>::step(Marks& blocking) {
   for (int halvings = 0; halvings <= Steering::halvings; ++halvings, length /= 2) {
     const double next = share_ + length > 1 - 1e-9 ? 1 : share_ + length;
     parallel_for(executor_, move_of.size(), [&](std::size_t v) {
-      move_of[v] *= 0.5;  // a guess that the last attempt gave
+      move_of[v] *= 0.5;  // a guess by the last attempt
       if (mesh_.path_of[v] != none) move_of[v] = paths_.at(mesh_.path_of[v], next) - position_of[v];
     });
     extension.solve(move_of);
@@ -208,19 +236,25 @@ std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& block
 
 template <int Dim>
 void Mover<Dim>::go_to(double share, const Field& move_of) {
-  parallel_for(executor_, mesh_.site_of.size(),
-               [&](std::size_t v) { mesh_.site_of[v].position = position_at(share, move_of, v); });
+  parallel_for(executor_, mesh_.site_of.size(), [&](std::size_t v) {
+    mesh_.site_of[v].position = position_at(share, move_of, v);
+    mesh_.speed_of[v] = 1 / (share - share_) * move_of[v];
+  });
   mesh_.quality_of = next_quality_of_;
   share_ = share;
   ++report_.steps;
 }
 
+/// Strained elements are adapted, too, if there is anything to adapt.
 template <int Dim>
 void Mover<Dim>::mark_bad(Marks& marks) const {
-  parallel_for(executor_, marks.size(), [&](std::size_t e) {
-    const double quality = mesh_.quality_of[e];
-    if (quality < remesh_below_ && quality < Steering::worse * mesh_.tried_of[e]) marks[e] = 1;
-  });
+  const auto mark_below = [&](double quality, double worse) {
+    parallel_for(executor_, marks.size(), [&](std::size_t e) {
+      if (mesh_.quality_of[e] < std::min(quality, worse * mesh_.came_with[e])) marks[e] = 1;
+    });
+  };
+  mark_below(remesh_below_, Steering::worse);
+  if (std::ranges::count(marks, 1) != 0) mark_below(Steering::strained, Steering::much_worse);
 }
 
 template <int Dim>
@@ -239,28 +273,32 @@ void Mover<Dim>::grow(Marks& marks, int layers) const {
 }
 
 template <int Dim>
-bool Mover<Dim>::adapt_part(Marks marks, int layers) {
+bool Mover<Dim>::adapt_part(Marks marks, int layers, double least_gain) {
   grow(marks, layers);
   const auto count = static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
   if (count == 0 || !options_.remeshes) return false;
-  {
-    FixedMesh<Dim> now = topology_now();
-    cargo_.follow(topology_, now);
-    topology_ = std::move(now);
-  }
+  FixedMesh<Dim> now = topology_now();
+  cargo_.follow(topology_, now);
+  topology_ = std::move(now);
   const Part<Dim> part(mesh_, topology_, marks);
-  const AdaptedMesh adapted = meshadapt::adapt(executor_, part.mesh(), part.metric(),
-                                               {.smallest_size = options_.smallest_size,
-                                                .largest_size = options_.largest_size,
-                                                .gradation = options_.gradation});
+  const AdaptedMesh adapted =
+      meshadapt::adapt(executor_, part.mesh(), part.metric(),
+                       {.smallest_size = options_.smallest_size,
+                        .largest_size = options_.largest_size,
+                        .gradation = options_.gradation,
+                        .required_gradation = Steering::required_gradation});
+  ++report_.adaptations;
+  report_.adapted_elements += count;
+  report_.adapt_seconds += adapted.report.total_seconds;
+  double worst = 1;
+  for (std::size_t e = 0; e < marks.size(); ++e)
+    if (marks[e]) worst = std::min(worst, mesh_.quality_of[e]);
+  if (!(worst_quality<Dim>(adapted) > least_gain * worst)) return false;
   const Origins origin = origins(executor_, part.mesh(), adapted.mesh);
   const Renewals renewals = part.put_back(mesh_, adapted, origin.vertex);
   cargo_.replace(topology_, part, adapted, renewals);
   connect();
   cargo_.settle(topology_);
-  ++report_.adaptations;
-  report_.adapted_elements += count;
-  report_.adapt_seconds += adapted.report.total_seconds;
   return true;
 }
 

@@ -43,9 +43,9 @@ class Mover {
   void mark_bad(Marks& marks) const;
   /// Adds so many layers of elements around marked ones, and takes out what may not change.
   void grow(Marks& marks, int layers) const;
-  /// Adapts what is marked; returns whether anything was.
-  bool adapt_part(Marks marks, int layers);
-  void stop(const Marks& blocking);
+  /// Adapts what is marked, and so many layers around. Returns false, and changes nothing, if that
+  /// is nothing, or the worst quality does not become more than `least_gain` times as good.
+  bool adapt_part(Marks marks, int layers, double least_gain);
   std::string place_of_first(const Marks& marks) const;
   MovedMesh finish();
 

@@ -2,11 +2,13 @@
 /// MovingMesh<Dim>: a mesh on its way, and how it changes when a part of it is adapted.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/quality.hpp"
+#include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 
@@ -16,11 +18,12 @@ template <int Dim>
 struct MovingMesh {
   AnyMesh any;                         // all but coordinates, which are in site_of
   std::vector<Site<Dim>> site_of;      // [vertex]
+  std::vector<Vector<Dim>> speed_of;   // [vertex], of the last step
   std::vector<std::uint32_t> path_of;  // [vertex], see Paths; or none
   std::vector<std::uint32_t> body_of;  // [element], see Paths; or 0
   std::vector<std::uint8_t> is_held;   // [element], may not change: rigid or required
   std::vector<double> quality_of;      // [element]
-  std::vector<double> tried_of;        // [element], quality that adaptation could reach
+  std::vector<double> came_with;       // [element], quality at first; 1 if it was not there
 
   double quality(const Corners<Dim>& corners) const {
     std::array<const Site<Dim>*, Dim + 1> sites;
@@ -28,6 +31,14 @@ struct MovingMesh {
     return meshadapt::quality<Dim>(sites);
   }
 };
+
+/// Position and metric of a vertex of an adapted mesh.
+template <int Dim>
+Site<Dim> site_in(const AdaptedMesh& adapted, VertexId vertex) {
+  Metric<Dim> metric;
+  std::copy_n(&adapted.metric.values[vertex * metric.m.size()], metric.m.size(), metric.m.begin());
+  return make_site(position_in<Dim>(adapted.mesh, vertex), metric);
+}
 
 /// For each entity of a mesh of which a part was adapted: the one before that it is, or the one of
 /// the adapted part; the other is none.

@@ -295,7 +295,7 @@ void Part<Dim>::renew_elements(MovingMesh<Dim>& whole, const AnyMesh& adapted,
     e = index_of[e];  // these are never chosen
   renew(whole.body_of, renewal, [&](auto e) { return element_codes_[cells.reference[e]].second; });
   renew(whole.is_held, renewal, [](auto) { return std::uint8_t{0}; });
-  renew(whole.tried_of, renewal, [](auto) { return -1.0; });  // set by whoever measures them
+  renew(whole.came_with, renewal, [](auto) { return 1.0; });
 }
 
 template <int Dim>
@@ -305,14 +305,10 @@ Renewals Part<Dim>::put_back(MovingMesh<Dim>& whole, const AdaptedMesh& adapted,
   const PartNumbers numbers = number_vertices(origin_of, renewals.vertices);
   renew_lists(whole.any, adapted.mesh, numbers);
   renew_elements(whole, adapted.mesh, numbers, renewals.elements);
-  const auto site = [&](std::uint32_t v) {
-    Metric<Dim> metric;
-    std::copy_n(&adapted.metric.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
-    return make_site(position_in<Dim>(adapted.mesh, v), metric);
-  };
   renew(whole.any.vertex_reference, renewals.vertices,
         [&](auto v) { return adapted.mesh.vertex_reference[v]; });
-  renew(whole.site_of, renewals.vertices, site);
+  renew(whole.site_of, renewals.vertices, [&](auto v) { return site_in<Dim>(adapted, v); });
+  renew(whole.speed_of, renewals.vertices, [](auto) { return Vector<Dim>{}; });
   renew(whole.path_of, renewals.vertices, [](auto) { return none; });
   return renewals;
 }

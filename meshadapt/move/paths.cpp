@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 
 #include "core/first_bad.hpp"
@@ -181,6 +182,14 @@ Vector<Dim> Paths<Dim>::at(std::uint32_t path, double share) const {
   if (share == 1) return end_[path];
   if (!part.is_rigid) return start_[path] + share * (end_[path] - start_[path]);
   return part.motion.moved(start_[path], share) + share * rest_[path];
+}
+
+template <int Dim>
+double Paths<Dim>::first_stride() const {
+  double turn = std::numbers::pi / 4;
+  for (const Part& part : parts_)
+    if (part.is_rigid && part.moves) turn = std::max(turn, std::abs(part.motion.angle));
+  return std::numbers::pi / 4 / turn;
 }
 
 template <int Dim>

@@ -43,6 +43,9 @@ class Paths {
   bool is_rigid(std::uint32_t body) const { return parts_[body - 1].is_rigid; }
   Vector<Dim> at(std::uint32_t path, double share) const;
 
+  /// A share of the way on which nothing turns by more than 45 degrees.
+  double first_stride() const;
+
   /// Is a vertex near enough to something that moves to follow it? `share` is the present one, and
   /// the one to go to.
   std::vector<std::uint8_t> within_reach(const runtime::Executor& executor,

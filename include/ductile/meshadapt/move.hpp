@@ -38,7 +38,7 @@ struct MoveOptions {
   bool keep_partial = false;
 
   /// One symmetric tensor at each vertex: the sizes to adapt to. Vertices take them along. Null:
-  /// those that the mesh has, see default_metric()
+  /// those that the mesh has, alike in all directions, see implied_metric()
   const AnyField* metric = nullptr;
   double smallest_size = 0, largest_size = 0, gradation = 0;  ///< see AdaptOptions
   bool complete_boundary = false;                             ///< see MakeMeshOptions
