@@ -30,12 +30,12 @@ struct Steering {
   static constexpr double strained = 1.75;     // times remesh_below: strained elements are below,
   static constexpr double much_worse = 0.8;    // and below this times the quality they came with
   static constexpr double growth = 1.5;        // of steps
-  static constexpr int halvings = 10;          // of a step
+  static constexpr double shortest = 2e-4;     // step, as a share of the way
   static constexpr int polishings = 2;         // at the end
   static constexpr double least_gain = 1.01;   // of the worst quality, by one of these
   static constexpr double required_gradation = 2.3;  // sizes at facets that stay are their own;
                                                      // Mmg's default
-  static constexpr int tries = 4;  // to adapt where the way is blocked, each wider
+  static constexpr int tries = 2;  // to adapt where the way is blocked, the second wider
 };
 template <int Dim>
 constexpr int layers_around = Dim == 2 ? 4 : 3;  // that are adapted around bad elements
@@ -149,7 +149,7 @@ MovedMesh Mover<Dim>::run() {
       mark_bad(blocking);
       adapt_part(blocking, layers_around<Dim>, 0);
     } else {
-      if (tries == Steering::tries || !adapt_part(blocking, layers_around<Dim> << tries, 0)) {
+      if (tries == Steering::tries || !adapt_part(blocking, layers_around<Dim> << 2 * tries, 0)) {
         report_.stopped = "because " + place_of_first(blocking) + " would be flattened";
         break;
       }
@@ -186,7 +186,7 @@ bool Mover<Dim>::step(Marks& blocking) {
   });
   const Extension<Dim> extension(executor_, topology_, position_of, is_free, walls);
   blocking.assign(topology_.element_count(), 0);
-  for (int halvings = 0; halvings <= Steering::halvings; ++halvings, length /= 2) {
+  for (; length >= std::min(Steering::shortest, 1 - share_); length /= 2) {
     const double next = share_ + length > 1 - 1e-9 ? 1 : share_ + length;
     parallel_for(executor_, move_of.size(), [&](std::size_t v) {
       move_of[v] *= 0.5;  // a guess by the last attempt
@@ -201,7 +201,7 @@ bool Mover<Dim>::step(Marks& blocking) {
     }
     blocking = std::move(bad);
   }
-  stride_ = 16 * length;
+  stride_ = 16 * Steering::shortest;
   return false;
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 /// The mesh follows up to this far from a body's box, in units of the box's longest side, and this
 /// many times the body's longest edge.
-constexpr double reach = 2, reach_in_edges = 4;
+constexpr double reach = 1, reach_in_edges = 4;
 /// A displacement is rigid if it differs from a rigid motion by less than this share of itself.
 constexpr double rigid_tolerance = 1e-3;
 
