@@ -144,6 +144,25 @@ class MetricFit:
     error: float
     reached: bool
 
+class MoveOptions:
+    bodies: Sequence[int]
+    boundaries: Sequence[int]
+    remesh_below: float
+    keep_partial: bool
+    smallest_size: float
+    largest_size: float
+    gradation: float
+    def __init__(self) -> None: ...
+class MoveReport:
+    share: float
+    steps: int
+    adaptations: int
+    adapted_elements: int
+    worst_quality: float
+    adapt_seconds: float
+    total_seconds: float
+    stopped: str
+    warnings: list[str]
 class TransferReport:
     vertices_outside: int
     volume_outside: float
@@ -189,6 +208,9 @@ def remesh(mesh: MeshData, metric: Optional[tuple[_Floats, FieldType]], options:
 def remesh_to_sizes(mesh: MeshData, sizes: Sizes, options: Options, threads: Executor,
                     progress: Optional[Callable[[str, int, int], Optional[bool]]],
                     ) -> tuple[MeshData, _Floats, Report]: ...
+def move(mesh: MeshData, displacement: _Floats, metric: Optional[tuple[_Floats, FieldType]],
+         fields: tuple[Sequence[tuple[str, FieldType, bool, _Floats]], bool], options: MoveOptions,
+         threads: Executor) -> tuple[MeshData, _Floats, list[_Floats], MoveReport]: ...
 def solution_metric(mesh: MeshData, values: _Floats, options: SolutionMetricOptions,
                     threads: Executor) -> tuple[_Floats, MetricFit]: ...
 def complexity_of_elements(dimension: int, elements: float) -> float: ...

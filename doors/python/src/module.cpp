@@ -42,5 +42,6 @@ PYBIND11_MODULE(_ductile, module) {
   bind_geometry(module);
   bind_adapt(module);
   bind_metric(module);
+  bind_move(module);
   bind_transfer(module);
 }
