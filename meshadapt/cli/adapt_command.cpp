@@ -68,7 +68,8 @@ constexpr std::array<Option, 37> own_options{{
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
     {"-lag", "N",
-     "moves the mesh by the vectors of -sol (ductile help move); 0: without adapting it, 1, 2: with"},
+     "moves the mesh by the vectors of -sol (ductile help move); 0: without adapting it, 1, 2: "
+     "with"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
     {"-geometry", "FILE",

@@ -120,8 +120,7 @@ AnyField displacement_of(const MoveJob& job, const meshadapt::MeshWithFields& fi
   return field;
 }
 
-AnyField metric_of(const MoveJob& job, const AnyMesh& mesh,
-                   meshadapt::Warnings& warnings) {
+AnyField metric_of(const MoveJob& job, const AnyMesh& mesh, meshadapt::Warnings& warnings) {
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
   if (job.metric_in)
     return read_metric(*job.metric_in, mesh, warnings,

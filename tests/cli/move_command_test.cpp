@@ -57,9 +57,9 @@ TEST(MoveCommand, WritesWhatTheLibraryGives) {
   EXPECT_TRUE(contains(outcome.out, "moved 100 % of the way"));
   const runtime::Executor executor({.threads = 1});
   const auto fields = meshadapt::named_fields(files.field, "f");
-  const auto moved = meshadapt::move(
-      executor, files.mesh, files.displacement,
-      {.fields = fields, .carrying = {meshadapt::Carrying::conservatively}});
+  const auto moved =
+      meshadapt::move(executor, files.mesh, files.displacement,
+                      {.fields = fields, .carrying = {meshadapt::Carrying::conservatively}});
   const AnyMesh written = meshadapt::read_mesh(files.path("b.mesh"));
   EXPECT_EQ(written.coordinates, moved.mesh.coordinates);
   EXPECT_EQ(written.triangles, moved.mesh.triangles);

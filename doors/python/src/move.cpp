@@ -24,10 +24,10 @@ using meshadapt::MoveReport;
 using meshadapt::NamedField;
 
 /// A field of a mesh: name, type, whether it is on cells, rows.
-using GivenField = std::tuple<std::string, AnyField::Type, bool, Given<double>>;
+using CarriedField = std::tuple<std::string, AnyField::Type, bool, Given<double>>;
 /// Fields, and whether their integrals are kept.
-using GivenFields = std::pair<std::vector<GivenField>, bool>;
-using GivenMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
+using CarriedFields = std::pair<std::vector<CarriedField>, bool>;
+using MovedMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
 
 py::list taken(std::vector<NamedField>& fields, int dimension) {
   py::list list;
@@ -39,9 +39,9 @@ py::list taken(std::vector<NamedField>& fields, int dimension) {
   return list;
 }
 
-py::tuple move(const AnyMesh& mesh, const Given<double>& displacement, const GivenMetric& metric,
-               const GivenFields& fields, const MoveOptions& given_options,
-               const runtime::ExecutorOptions& threads) {
+py::tuple moved(const AnyMesh& mesh, const Given<double>& displacement, const MovedMetric& metric,
+                const CarriedFields& fields, const MoveOptions& given_options,
+                const runtime::ExecutorOptions& threads) {
   MoveOptions options = given_options;
   std::vector<NamedField> carried;
   for (const auto& [name, type, on_cells, rows] : fields.first)
@@ -58,13 +58,13 @@ py::tuple move(const AnyMesh& mesh, const Given<double>& displacement, const Giv
         {options.smallest_size, options.largest_size});
     options.metric = &*sizes;
   }
-  meshadapt::MovedMesh moved = work(threads, [&](const runtime::Executor& executor) {
+  meshadapt::MovedMesh result = work(threads, [&](const runtime::Executor& executor) {
     return meshadapt::move(executor, mesh, vectors, options);
   });
-  const Shape shape{signed_size(moved.mesh.vertex_count()), signed_size(stride_of(moved.metric))};
-  return py::make_tuple(std::make_shared<AnyMesh>(std::move(moved.mesh)),
-                        take(std::move(moved.metric.values), shape),
-                        taken(moved.fields, mesh.dimension), std::move(moved.report));
+  const Shape shape{signed_size(result.mesh.vertex_count()), signed_size(stride_of(result.metric))};
+  return py::make_tuple(std::make_shared<AnyMesh>(std::move(result.mesh)),
+                        take(std::move(result.metric.values), shape),
+                        taken(result.fields, mesh.dimension), std::move(result.report));
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ void bind_move(py::module_& module) {
       .def_readonly("total_seconds", &MoveReport::total_seconds)
       .def_readonly("stopped", &MoveReport::stopped)
       .def_readonly("warnings", &MoveReport::warnings);
-  module.def("move", &move);
+  module.def("move", &moved);
 }
 
 }  // namespace ductile::python
