@@ -78,7 +78,8 @@ TEST(MoveCommand, MmgsOptionDoesTheSame) {
     EXPECT_EQ(meshadapt::read_mesh(files.path("c.mesh")).coordinates,
               meshadapt::read_mesh(files.path("b.mesh")).coordinates);
   }
-  const Outcome held = files.folder.run("adapt a.mesh -lag 0 -sol u.sol -o d.mesh");
+  const Files far(0.55);
+  const Outcome held = far.folder.run("adapt a.mesh -lag 0 -sol u.sol -o d.mesh");
   EXPECT_EQ(held.status, 1);
   EXPECT_TRUE(contains(held.err, "stopped at")) << held.err;
   const Outcome other = files.folder.run("adapt a.mesh -lag 1 -sol u.sol -hausd 1 -o d.mesh");
