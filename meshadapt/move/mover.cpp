@@ -112,6 +112,7 @@ Mover<Dim>::Mover(const Executor& executor, AnyMesh mesh, const AnyField& displa
   stride_ = paths_.first_stride();
   for (std::size_t e = 0; e < mesh_.is_held.size(); ++e)
     if (mesh_.body_of[e] != 0 && paths_.is_rigid(mesh_.body_of[e])) mesh_.is_held[e] = 1;
+  mesh_.made_with.assign(mesh_.is_held.size(), -1);
   connect();
   mesh_.came_with = mesh_.quality_of;
 }
@@ -131,6 +132,7 @@ void Mover<Dim>::connect() {
   mesh_.quality_of.resize(topology_.element_count());
   parallel_for(executor_, mesh_.quality_of.size(), [&](std::size_t e) {
     mesh_.quality_of[e] = mesh_.quality(topology_.corners_of[e]);
+    if (mesh_.made_with[e] < 0) mesh_.made_with[e] = mesh_.quality_of[e];
   });
 }
 
@@ -227,7 +229,7 @@ std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& block
         const double quality = next_quality_of_[e] = moved.quality(corners);
         const bool is_rigid = mesh_.body_of[e] != 0 && paths_.is_rigid(mesh_.body_of[e]);
         const double least =
-            is_rigid ? 0 : std::min(keep_above_, Steering::kept_quality * mesh_.quality_of[e]);
+            is_rigid ? 0 : std::min(keep_above_, Steering::kept_quality * mesh_.made_with[e]);
         blocking[e] = !(quality > least);
         return std::size_t{blocking[e]};
       },

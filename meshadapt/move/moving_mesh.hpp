@@ -23,6 +23,7 @@ struct MovingMesh {
   std::vector<std::uint32_t> body_of;  // [element], see Paths; or 0
   std::vector<std::uint8_t> is_held;   // [element], may not change: rigid or required
   std::vector<double> quality_of;      // [element]
+  std::vector<double> made_with;       // [element], quality at first, or when it was made
   std::vector<double> came_with;       // [element], quality at first; 1 if it was not there
 
   double quality(const Corners<Dim>& corners) const {

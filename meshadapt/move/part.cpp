@@ -295,6 +295,7 @@ void Part<Dim>::renew_elements(MovingMesh<Dim>& whole, const AnyMesh& adapted,
     e = index_of[e];  // these are never chosen
   renew(whole.body_of, renewal, [&](auto e) { return element_codes_[cells.reference[e]].second; });
   renew(whole.is_held, renewal, [](auto) { return std::uint8_t{0}; });
+  renew(whole.made_with, renewal, [](auto) { return -1.0; });  // measured when connected anew
   renew(whole.came_with, renewal, [](auto) { return 1.0; });
 }
 

@@ -28,8 +28,8 @@ struct MoveOptions {
   /// Elements that get worse than this are improved by adaptation; quality as in quality.hpp, in
   /// the metric. 0: 0.35 in 2D, 0.2 in 3D
   double remesh_below = 0;
-  /// A step ends before an element gets worse than this, or than 0.6 times its quality before the
-  /// step if that is less. 0: 0.15 in 2D, 0.08 in 3D
+  /// A step ends before an element gets worse than this, or than 0.6 times its quality at first, or
+  /// when adaptation made it, if that is less. 0: 0.15 in 2D, 0.08 in 3D
   double keep_above = 0;
   bool remeshes = true;   ///< false: only moves vertices, as far as that goes
   int most_steps = 1000;  ///< after which move() gives up
