@@ -27,18 +27,20 @@ struct Steering {
   static constexpr double kept_quality = 0.6;  // see MoveOptions::keep_above
   static constexpr double worse = 0.99;        // elements below this times the quality that they
                                                // came with are adapted
-  static constexpr double strained = 1.75;     // times remesh_below: strained elements are below,
-  static constexpr double much_worse = 0.8;    // and below this times the quality they came with
+  static constexpr double much_worse = 0.8;    // strained elements are below this times that
   static constexpr double growth = 1.5;        // of steps
   static constexpr double shortest = 2e-4;     // step, as a share of the way
-  static constexpr int polishings = 2;         // at the end
-  static constexpr double least_gain = 1.01;   // of the worst quality, by one of these
+  static constexpr int polishings = 3;         // at the end
+  static constexpr double least_gain = 1.05;   // of the worst quality, by one of these
   static constexpr double required_gradation = 2.3;  // sizes at facets that stay are their own;
                                                      // Mmg's default
   static constexpr int tries = 2;  // to adapt where the way is blocked, the second wider
 };
 template <int Dim>
 constexpr int layers_around = Dim == 2 ? 4 : 3;  // that are adapted around bad elements
+/// Strained elements are below this times remesh_below.
+template <int Dim>
+constexpr double strained = Dim == 2 ? 2 : 1.25;
 
 template <int Dim>
 MovingMesh<Dim> moving_mesh(const Executor& executor, const FixedMesh<Dim>& topology, AnyMesh mesh,
@@ -166,7 +168,8 @@ MovedMesh Mover<Dim>::run() {
   for (int times = 0; times < Steering::polishings; ++times) {
     blocking.assign(topology_.element_count(), 0);
     mark_bad(blocking);
-    if (!adapt_part(blocking, layers_around<Dim> << times, Steering::least_gain)) break;
+    const bool better = adapt_part(blocking, layers_around<Dim> << times, Steering::least_gain);
+    if (!better && *std::ranges::min_element(mesh_.quality_of) > keep_above_) break;
   }
   return finish();
 }
@@ -256,7 +259,8 @@ void Mover<Dim>::mark_bad(Marks& marks) const {
     });
   };
   mark_below(remesh_below_, Steering::worse);
-  if (std::ranges::count(marks, 1) != 0) mark_below(Steering::strained, Steering::much_worse);
+  if (std::ranges::count(marks, 1) != 0)
+    mark_below(strained<Dim> * remesh_below_, Steering::much_worse);
 }
 
 template <int Dim>
