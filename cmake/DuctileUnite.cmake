@@ -35,8 +35,8 @@ ductile_unite(ductile_runtime ductile_meshadapt ductile_meshadapt_plain ductile_
 set_source_files_properties(${PROJECT_SOURCE_DIR}/runtime/steal_by_signal.cpp
   TARGET_DIRECTORY ductile_runtime PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 if(TARGET ductile_cli)
-  set(alone adapt_command.cpp convert_command.cpp info_command.cpp metric_command.cpp transfer_command.cpp
-    view_command.cpp picture/ellipses.cpp picture/scene_metric.cpp)
+  set(alone adapt_command.cpp convert_command.cpp info_command.cpp metric_command.cpp move_command.cpp
+    transfer_command.cpp view_command.cpp picture/ellipses.cpp picture/scene_metric.cpp)
   list(TRANSFORM alone PREPEND ${PROJECT_SOURCE_DIR}/meshadapt/cli/)
   set_source_files_properties(${alone} TARGET_DIRECTORY ductile_cli PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endif()

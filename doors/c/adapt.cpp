@@ -14,6 +14,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/move.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 #include "level_set.hpp"
 
@@ -118,6 +119,25 @@ ductile_mesh* adapted_by(const ductile_options& options, const meshadapt::AnyMes
   return handle_of(std::move(adapted));
 }
 
+/// The mesh as an adapted one: its iterations are steps.
+ductile_mesh* moved_by(const ductile_mesh& mesh, const AnyField& displacement,
+                       const ductile_options& used, std::vector<std::int32_t> bodies) {
+  const runtime::Executor executor(used.executor);
+  meshadapt::MovedMesh moved =
+      meshadapt::move(executor, mesh.mesh, displacement,
+                      {.bodies = std::move(bodies),
+                       .metric = mesh.metric.values.empty() ? nullptr : &mesh.metric,
+                       .smallest_size = used.adapt.smallest_size,
+                       .largest_size = used.adapt.largest_size,
+                       .gradation = std::max(0.0, used.adapt.gradation)});
+  AdaptReport report;
+  report.iterations = moved.report.steps;
+  report.converged = true;
+  report.total_seconds = moved.report.total_seconds;
+  report.warnings = std::move(moved.report.warnings);
+  return handle_of({std::move(moved.mesh), std::move(moved.metric), std::move(report)});
+}
+
 }  // namespace
 }  // namespace ductile::c
 
@@ -153,6 +173,25 @@ int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
     *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
       return meshadapt::adapt_to_sizes(executor, mesh->mesh, sizes->sizes, adapt);
     });
+  });
+}
+
+int ductile_move(const ductile_mesh* mesh, const double* displacement, int64_t count,
+                 const int32_t* bodies, const ductile_options* options, ductile_mesh** moved) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_given(displacement, "displacement");
+    c::expect_array(bodies, count, "bodies");
+    c::expect_given(moved, "moved");
+    const meshadapt::AnyMesh& any = mesh->mesh;
+    const meshadapt::AnyField field{any.dimension,
+                                    any.vertex_count(),
+                                    {meshadapt::AnyField::Type::vector},
+                                    {displacement, displacement + any.coordinates.size()},
+                                    "displacement"};
+    const ductile_options defaults;
+    *moved = c::moved_by(*mesh, field, options == nullptr ? defaults : *options,
+                         {bodies, bodies + count});
   });
 }
 

@@ -278,6 +278,14 @@ module ductile
       type(c_ptr), value :: mesh, sizes, options
       type(c_ptr), intent(out) :: adapted
     end function
+    integer(c_int) function ductile_move(mesh, displacement, count, bodies, options, moved) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: mesh, options
+      real(c_double), intent(in) :: displacement(*)
+      integer(c_int64_t), value :: count
+      integer(c_int32_t), intent(in) :: bodies(*)
+      type(c_ptr), intent(out) :: moved
+    end function
     integer(c_int) function ductile_mesh_report(adapted, name, value) bind(C)
       import :: c_int, c_char, c_double, c_ptr
       type(c_ptr), value :: adapted

@@ -256,6 +256,14 @@ int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric
 int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
                            const ductile_options* options, ductile_mesh** adapted);
 
+/** Moves a mesh by displacement[vertex * dimension + axis], and adapts it where elements get bad:
+ * bodies are the elements with these references, `count` of them; with 0, displacements decide (see
+ * docs/moving.md). Sizes are those of the metric that an adapted or moved mesh has, otherwise the
+ * mesh's own; the moved mesh has them, too. Of the options, "hmin", "hmax", "hgrad" and "threads"
+ * matter. NULL for `options`: the defaults. If the way is blocked, DUCTILE_FAILED. */
+int ductile_move(const ductile_mesh* mesh, const double* displacement, int64_t count,
+                 const int32_t* bodies, const ductile_options* options, ductile_mesh** moved);
+
 /** A figure of the adaptation that a mesh came from: "iterations", "converged", "seconds",
  * "fixed_vertices", "held_long_edges", "held_short_edges", "warnings". */
 int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* value);

@@ -24,6 +24,7 @@
 #include "files.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
+#include "move_command.hpp"
 #include "recovery_option.hpp"
 #include "run_in_team.hpp"
 #include "size_options.hpp"
@@ -42,7 +43,7 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 41> own_options{{
+constexpr std::array<Option, 42> own_options{{
     {"-sol", "FIELD",
      "the metric or the sizes wanted, with -ls the level set (default: NAME.sol or .solb)"},
     {"-met", "FIELD", "the same as -sol; with -ls, the metric"},
@@ -68,6 +69,9 @@ constexpr std::array<Option, 41> own_options{{
     {"-nomove", "", "moves no vertex"},
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
+    {"-lag", "N",
+     "moves the mesh by the vectors of -sol (ductile help move); 0: without adapting it, 1, 2: "
+     "with"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
     {"-geometry", "FILE",
@@ -408,6 +412,7 @@ int work(const Executor& executor, Job job) {
 }
 
 int run(const Arguments& arguments) {
+  if (arguments.has("-lag")) return run_lag(arguments);
   Job job = adapt_job(arguments);
   check_files(job);
   return run_in_team({.threads = job.threads, .deterministic = !job.racing},

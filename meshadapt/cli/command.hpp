@@ -24,8 +24,8 @@ struct Command {
   std::string_view (*instead)(std::string_view option) = instead_of_mmg_option;
 };
 
-extern const Command adapt_command, info_command, metric_command, transfer_command, view_command,
-    convert_command;
+extern const Command adapt_command, info_command, metric_command, move_command, transfer_command,
+    view_command, convert_command;
 
 /// A program with commands.
 struct Program {

@@ -7,9 +7,8 @@ namespace {
 struct Refused {
   std::string_view name, instead;
 };
-constexpr std::array<Refused, 8> refused{{
+constexpr std::array<Refused, 7> refused{{
     {"3dMedit", "Mmg's, not here: flat meshes of dimension 3 are read, and written in dimension 2"},
-    {"lag", "Mmg's, not here: meshes are not moved along displacements"},
     {"lssurf", "Mmg's, not here: -ls cuts the elements, not only the boundary"},
     {"nreg", "Mmg's, not here: normals are not smoothed"},
     {"nsd", "Mmg's, not here: the whole mesh is written"},

@@ -14,9 +14,9 @@ namespace ductile::cli {
 
 namespace {
 
-constexpr std::array<const Command*, 6> all_commands{&adapt_command,  &info_command,
-                                                     &metric_command, &transfer_command,
-                                                     &view_command,   &convert_command};
+constexpr std::array<const Command*, 7> all_commands{
+    &adapt_command,    &info_command, &metric_command, &move_command,
+    &transfer_command, &view_command, &convert_command};
 
 const Command* find_command(const Program& program, std::string_view name) {
   for (const Command* command : program.commands)

@@ -112,6 +112,7 @@ Metric<Dim> exponential(const Metric<Dim>& a) {
 
 template PrincipalAxes<2> principal_axes(const Metric<2>&);
 template PrincipalAxes<3> principal_axes(const Metric<3>&);
+template PrincipalAxes<4> principal_axes(const Metric<4>&);
 template Metric<2> compose(const PrincipalAxes<2>&);
 template Metric<3> compose(const PrincipalAxes<3>&);
 template Metric<2> logarithm(const Metric<2>&);

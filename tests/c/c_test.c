@@ -489,6 +489,30 @@ static void test_geometry(void) {
   ductile_mesh_destroy(mesh);
 }
 
+static void test_moving(void) {
+  ductile_mesh *mesh = make_disk(), *moved = NULL, *again = NULL;
+  double displacement[2000];
+  const int32_t unknown = 77;
+  const int64_t count = ductile_mesh_count(mesh, DUCTILE_VERTICES);
+  for (int64_t i = 0; i < count; ++i) {
+    displacement[2 * i] = 3;
+    displacement[2 * i + 1] = .5;
+  }
+  EXPECT(ductile_move(mesh, NULL, 0, NULL, NULL, &moved) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_move(mesh, displacement, 1, &unknown, NULL, &moved) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("bodies: expected references of elements, found 77, which none has");
+  EXPECT(ductile_move(mesh, displacement, 0, NULL, NULL, &moved) == DUCTILE_OK);
+  EXPECT(ductile_mesh_count(moved, DUCTILE_VERTICES) == count);
+  for (int64_t i = 0; i < 2 * count; ++i)
+    EXPECT(ductile_mesh_coordinates(moved)[i] ==
+           ductile_mesh_coordinates(mesh)[i] + displacement[i]);
+  EXPECT(ductile_mesh_metric(moved) != NULL);
+  EXPECT(ductile_move(moved, displacement, 0, NULL, NULL, &again) == DUCTILE_OK);
+  ductile_mesh_destroy(again);
+  ductile_mesh_destroy(moved);
+  ductile_mesh_destroy(mesh);
+}
+
 /* The piece of C in docs/c-and-fortran.md. */
 static void test_guide(void) {
   const double *points = square, sizes[] = {0.1, 0.1, 0.1, 0.1};
@@ -654,6 +678,7 @@ int main(void) {
   test_names();
   test_sizes();
   test_geometry();
+  test_moving();
   test_guide();
   test_level_sets();
   test_signed_distance();

@@ -26,7 +26,7 @@ TEST(Program, ShowsItsCommandsAndVersion) {
   EXPECT_EQ(folder.run("--version").out.rfind("ductile ", 0), 0U);
   const Outcome help = folder.run("help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"adapt", "info", "metric", "transfer", "view", "convert"}) {
+  for (const char* command : {"adapt", "info", "metric", "move", "transfer", "view", "convert"}) {
     EXPECT_TRUE(contains(help.out, command));
     EXPECT_EQ(folder.run(std::string("help ") + command).status, 0);
     EXPECT_EQ(folder.run(std::string(command) + " --help").status, 0);
@@ -86,7 +86,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adpat", "did you mean 'adapt'");
   expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
   expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
-  for (const char* refused : {"3dMedit", "lag", "ls", "lssurf", "nreg", "nsd", "optimLES", "xreg"})
+  for (const char* refused : {"3dMedit", "ls", "lssurf", "nreg", "nsd", "optimLES", "xreg"})
     expect(("adapt a.mesh -" + std::string(refused) + " 1").c_str(),
            ("unknown option -" + std::string(refused) + "; Mmg's, not here: ").c_str());
   expect("adapt a.mesh -in b.mesh", "expected one mesh, found 2");

@@ -65,7 +65,7 @@ forbid("std::(atomic|mutex|shared_mutex|thread|jthread|async|call_once)|__atomic
 forbid("<(csignal|signal\\.h)>|sigaction|std::signal" "signals stay inside runtime" ${above_runtime})
 
 # The floors of mesh adaptation, lowest first. Of rooms on one floor neither includes the other.
-set(floors core mesh metric io,transfer,geometry checks,operators,levelset adapt cli)
+set(floors core mesh metric io,transfer,geometry checks,operators,levelset adapt move cli)
 set(level 0)
 foreach(floor IN LISTS floors)
   string(REPLACE "," ";" rooms ${floor})

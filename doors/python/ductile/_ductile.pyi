@@ -169,6 +169,25 @@ class MetricFit:
     error: float
     reached: bool
 
+class MoveOptions:
+    bodies: Sequence[int]
+    boundaries: Sequence[int]
+    remesh_below: float
+    keep_partial: bool
+    smallest_size: float
+    largest_size: float
+    gradation: float
+    def __init__(self) -> None: ...
+class MoveReport:
+    share: float
+    steps: int
+    adaptations: int
+    adapted_elements: int
+    worst_quality: float
+    adapt_seconds: float
+    total_seconds: float
+    stopped: str
+    warnings: list[str]
 class TransferReport:
     vertices_outside: int
     volume_outside: float
@@ -218,6 +237,9 @@ def refine_to_level_set(mesh: MeshData, metric: Optional[tuple[_Floats, FieldTyp
                         function: Callable[[_Floats], _Floats], tolerance: float, smallest: float,
                         threads: Executor) -> tuple[MeshData, _Floats, Report]: ...
 def cut(mesh: MeshData, values: _Floats, options: CutOptions, threads: Executor) -> CutData: ...
+def move(mesh: MeshData, displacement: _Floats, metric: Optional[tuple[_Floats, FieldType]],
+         fields: tuple[Sequence[tuple[str, FieldType, bool, _Floats]], bool], options: MoveOptions,
+         threads: Executor) -> tuple[MeshData, _Floats, list[_Floats], MoveReport]: ...
 def solution_metric(mesh: MeshData, values: _Floats, options: SolutionMetricOptions,
                     threads: Executor) -> tuple[_Floats, MetricFit]: ...
 def implied(mesh: MeshData) -> _Floats: ...

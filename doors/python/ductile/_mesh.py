@@ -349,6 +349,67 @@ class Mesh:
         warn(out.report.warnings)
         return out
 
+    def move(self, displacement: Any, *, bodies: Iterable[int] = (), boundaries: Iterable[int] = (),
+             metric: Optional[MetricLike] = None, hmin: float = 0, hmax: float = 0, hgrad: float = 0,
+             fields: Optional[Mapping[str, Any]] = None, conservative: bool = False,
+             keep_partial: bool = False, threads: int = 0) -> Mesh:
+        """A new mesh, in which bodies have moved; it is adapted near them where it must be.
+
+        Parameters
+        ----------
+        displacement : (n, d) array_like
+            A vector for each vertex.
+        bodies, boundaries : iterable of int, optional
+            References of cells and of facets that move. By default displacements decide: vertices
+            move that have one, and regions with such vertices inside.
+        metric : optional
+            The sizes to adapt to, as in `remesh`; vertices take them along. By default those of the
+            mesh. In a loop, give the `metric` of the moved mesh to the next call.
+        hmin, hmax, hgrad : float, optional
+            As in `remesh`.
+        fields : dict of str to array_like, optional
+            A row for each vertex or each cell. They go with the mesh, and come back as `fields` and
+            `cell_fields`.
+        conservative : bool, optional
+            Keep their integrals instead of their values.
+        keep_partial : bool, optional
+            If the way is blocked, return the mesh of the place that was reached; `report.stopped`
+            says why. Otherwise `Error` is raised.
+
+        Returns
+        -------
+        Mesh
+            With `metric`, `report`, `fields` and `cell_fields`.
+
+        Examples
+        --------
+        >>> new = mesh.move(u, bodies=[3])
+        >>> newer = new.move(v, bodies=[3], metric=new.metric)
+        """
+        vectors = finite(floats(displacement, "displacement"), "displacement")
+        if vectors.shape != self.points.shape:
+            raise InputError(f"displacement: expected shape {self.points.shape}, found {vectors.shape}")
+        options = _ductile.MoveOptions()
+        options.bodies = [whole(ref, "bodies", -2**31, 2**31 - 1) for ref in bodies]
+        options.boundaries = [whole(ref, "boundaries", -2**31, 2**31 - 1) for ref in boundaries]
+        options.smallest_size, options.largest_size = number(hmin, "hmin"), number(hmax, "hmax")
+        options.gradation = max(0.0, number(hgrad, "hgrad"))
+        options.keep_partial = flag(keep_partial, "keep_partial")
+        given = [field(name, values, self._data, None)
+                 for name, values in mapping(fields or {}, "fields").items()]
+        runs = executor(threads)
+        with named(self.dim):
+            rows = None if metric is None else as_rows(self, metric, runs)
+            data, tensors, carried, report = _ductile.move(
+                self._data, vectors, rows, (given, flag(conservative, "conservative")), options, runs)
+        out = Mesh._of(data)
+        out.metric, out.report = tensors, report
+        for (name, _, on_cells, _), values in zip(given, carried):
+            shaped = values.reshape(-1, *np.shape((fields or {})[name])[1:])
+            (out.cell_fields if on_cells else out.fields)[name] = shaped
+        warn(report.warnings)
+        return out
+
     def cut(self, phi: Any, level: float = 0, *, minus: int = 3, plus: int = 2, interface: int = 10,
             materials: Optional[Mapping[int, Optional[Sequence[int]]]] = None,
             least_component: float = 0, keep_volume: Optional[float] = None,

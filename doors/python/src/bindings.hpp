@@ -30,6 +30,7 @@ void bind_adapt(py::module_& module);
 void bind_geometry(py::module_& module);   // before bind_adapt(), whose options refer to it
 void bind_level_set(py::module_& module);  // after bind_adapt()
 void bind_metric(py::module_& module);
+void bind_move(py::module_& module);
 void bind_transfer(py::module_& module);
 
 inline py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }

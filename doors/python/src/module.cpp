@@ -43,5 +43,6 @@ PYBIND11_MODULE(_ductile, module) {
   bind_adapt(module);
   bind_level_set(module);
   bind_metric(module);
+  bind_move(module);
   bind_transfer(module);
 }

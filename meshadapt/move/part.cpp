@@ -1,0 +1,320 @@
+#include "move/part.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace ductile::meshadapt {
+
+namespace {
+
+std::vector<std::uint8_t> marked(std::size_t count, const std::vector<std::uint32_t>& list) {
+  std::vector<std::uint8_t> marks(count, 0);
+  for (const std::uint32_t i : list) marks[i] = 1;
+  return marks;
+}
+
+/// The list of required facets of a mesh.
+template <int Dim>
+auto& required_facets(auto& mesh) {
+  return Dim == 2 ? mesh.required_edges : mesh.required_triangles;
+}
+
+/// Replaces listed facets or edges that could change by those that the part came back with, which
+/// are the ones whose reference is not `kept`. Lists of indices follow.
+template <int N>
+class CellsRenewal {
+ public:
+  CellsRenewal(Cells<N>& cells, const std::vector<std::uint8_t>& passes, const Cells<N>& in_part,
+               const Codes<std::int32_t>& codes, const PartNumbers& numbers)
+      : of_old_(cells.size(), none), of_part_(in_part.size(), none) {
+    Cells<N> renewed;
+    const auto add = [&](std::uint32_t& index, auto vertices, std::int32_t reference,
+                         const std::vector<VertexId>& number_of) {
+      for (VertexId& v : vertices) v = number_of[v];
+      index = static_cast<std::uint32_t>(renewed.size());
+      renewed.add(vertices, reference);
+    };
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      if (!passes[c]) add(of_old_[c], cells.vertices[c], cells.reference[c], numbers.of_old);
+    for (std::size_t c = 0; c < in_part.size(); ++c)
+      if (in_part.reference[c] != codes.other())
+        add(of_part_[c], in_part.vertices[c], codes[in_part.reference[c]], numbers.of_part);
+    cells = std::move(renewed);
+  }
+
+  void renew(std::vector<std::uint32_t>& list, const std::vector<std::uint32_t>& in_part) const {
+    std::vector<std::uint32_t> renewed;
+    for (const std::uint32_t c : list)
+      if (of_old_[c] != none) renewed.push_back(of_old_[c]);
+    for (const std::uint32_t c : in_part)
+      if (of_part_[c] != none) renewed.push_back(of_part_[c]);
+    list = std::move(renewed);
+  }
+
+ private:
+  std::vector<std::uint32_t> of_old_, of_part_;  // new indices, or none
+};
+
+}  // namespace
+
+template <class Meaning>
+Codes<Meaning>::Codes(std::vector<Meaning> meanings) : meanings_(std::move(meanings)) {
+  std::sort(meanings_.begin(), meanings_.end());
+  meanings_.erase(std::unique(meanings_.begin(), meanings_.end()), meanings_.end());
+}
+
+template <class Meaning>
+std::int32_t Codes<Meaning>::code(const Meaning& meaning) const {
+  const auto at = std::lower_bound(meanings_.begin(), meanings_.end(), meaning);
+  return static_cast<std::int32_t>(at - meanings_.begin()) + 1;
+}
+
+template <int Dim>
+auto Part<Dim>::kinds_of(const MovingMesh<Dim>& whole) -> std::vector<Element> {
+  const auto& reference_of = elements_in<Dim>(whole.any).reference;
+  std::vector<Element> kinds;
+  for (std::size_t e = 0; e < reference_of.size(); ++e) {
+    const Element kind{reference_of[e], whole.body_of[e]};
+    if (kinds.empty() || kinds.back() != kind) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+template <int Dim>
+Part<Dim>::Part(const MovingMesh<Dim>& whole, const FixedMesh<Dim>& topology,
+                const std::vector<std::uint8_t>& is_chosen)
+    : whole_(whole),
+      topology_(topology),
+      is_chosen_(is_chosen),
+      element_codes_(kinds_of(whole)),
+      facet_codes_(facets_in<Dim>(whole.any).reference),
+      edge_codes_(whole.any.edges.reference),
+      local_of_(whole.site_of.size(), none),
+      facet_passes_(facets_in<Dim>(whole.any).size(), 0),
+      edge_passes_(Dim == 3 ? whole.any.edges.size() : 0, 0) {
+  mesh_.dimension = Dim;
+  mesh_.name = whole.any.name;
+  for (std::size_t e = 0; e < is_chosen.size(); ++e)
+    if (is_chosen[e]) elements_.push_back(static_cast<ElementId>(e));
+  take_vertices();
+  take_facets();
+  take_cut();
+  take_edges();
+  take_marks();
+}
+
+template <int Dim>
+template <std::size_t N>
+std::pair<int, int> Part<Dim>::count_around(const std::array<VertexId, N>& vertices) const {
+  std::pair<int, int> count{0, 0};
+  for (const ElementId e : topology_.elements_of(vertices[0])) {
+    const auto& corners = topology_.corners_of[e];
+    if (std::ranges::all_of(vertices, [&](VertexId v) { return contains(corners, v); }))
+      ++(is_chosen_[e] ? count.first : count.second);
+  }
+  return count;
+}
+
+template <int Dim>
+template <std::size_t N>
+std::array<VertexId, N> Part<Dim>::local(std::array<VertexId, N> vertices) const {
+  for (VertexId& v : vertices) v = local_of_[v];
+  return vertices;
+}
+
+template <int Dim>
+bool Part<Dim>::has_paths(std::span<const VertexId> vertices) const {
+  return std::ranges::all_of(vertices, [&](VertexId v) { return whole_.path_of[v] != none; });
+}
+
+template <int Dim>
+bool Part<Dim>::is_shared(VertexId vertex) const {
+  return std::ranges::any_of(topology_.elements_of(vertices_[vertex]),
+                             [&](ElementId e) { return !is_chosen_[e]; });
+}
+
+template <int Dim>
+void Part<Dim>::take_vertices() {
+  for (const ElementId e : elements_)
+    for (const VertexId v : topology_.corners_of[e]) local_of_[v] = 0;
+  for (std::size_t v = 0; v < local_of_.size(); ++v) {
+    if (local_of_[v] == none) continue;
+    local_of_[v] = static_cast<VertexId>(vertices_.size());
+    vertices_.push_back(static_cast<VertexId>(v));
+    const Vector<Dim>& position = whole_.site_of[v].position;
+    mesh_.coordinates.insert(mesh_.coordinates.end(), position.x.begin(), position.x.end());
+    mesh_.vertex_reference.push_back(whole_.any.vertex_reference[v]);
+  }
+  stays_.resize(vertices_.size(), 0);
+  auto& cells = elements_in<Dim>(mesh_);
+  for (const ElementId e : elements_)
+    cells.add(local(topology_.corners_of[e]),
+              element_codes_.code({elements_in<Dim>(whole_.any).reference[e], whole_.body_of[e]}));
+}
+
+/// Facets between the part and the others, which are not listed here, follow in take_cut().
+template <int Dim>
+void Part<Dim>::take_facets() {
+  const auto& listed = facets_in<Dim>(whole_.any);
+  const auto required = marked(listed.size(), required_facets<Dim>(whole_.any));
+  const auto ridge = marked(whole_.any.edges.size(), whole_.any.ridges);
+  auto& cells = facets_in<Dim>(mesh_);
+  for (std::size_t f = 0; f < listed.size(); ++f) {
+    const Facet<Dim>& corners = listed.vertices[f];
+    if (local_of_[corners[0]] == none) continue;
+    const auto [inside, outside] = count_around(corners);
+    if (inside == 0 || outside != 0) continue;
+    const auto index = static_cast<std::uint32_t>(cells.size());
+    const bool held = required[f] || has_paths(corners);
+    facet_passes_[f] = !held;
+    if (held) required_facets<Dim>(mesh_).push_back(index);
+    if (!held && Dim == 2 && ridge[f]) mesh_.ridges.push_back(index);
+    cells.add(local(corners), held ? facet_codes_.other() : facet_codes_.code(listed.reference[f]));
+    for (const VertexId v : corners)
+      if (whole_.path_of[v] != none) stays_[local_of_[v]] = 1;
+  }
+}
+
+template <int Dim>
+void Part<Dim>::take_cut() {
+  auto& cells = facets_in<Dim>(mesh_);
+  for (const ElementId e : elements_)
+    for (int i = 0; i <= Dim; ++i) {
+      const ElementId other = topology_.neighbour_of[e][static_cast<std::size_t>(i)];
+      if (other == none || is_chosen_[other]) continue;
+      required_facets<Dim>(mesh_).push_back(static_cast<std::uint32_t>(cells.size()));
+      cells.add(local(facet_of<Dim>(topology_.corners_of[e], i)), facet_codes_.other());
+    }
+}
+
+template <int Dim>
+void Part<Dim>::take_edges() {
+  if constexpr (Dim == 3) {
+    const auto& listed = whole_.any.edges;
+    const auto required = marked(listed.size(), whole_.any.required_edges);
+    const auto ridge = marked(listed.size(), whole_.any.ridges);
+    for (std::size_t e = 0; e < listed.size(); ++e) {
+      const auto& ends = listed.vertices[e];
+      if (local_of_[ends[0]] == none) continue;
+      const auto [inside, outside] = count_around(ends);
+      if (inside == 0) continue;
+      const auto index = static_cast<std::uint32_t>(mesh_.edges.size());
+      const bool held = outside != 0 || required[e] || has_paths(ends);
+      edge_passes_[e] = !held;
+      if (held) mesh_.required_edges.push_back(index);
+      if (ridge[e]) mesh_.ridges.push_back(index);
+      mesh_.edges.add(local(ends),
+                      held ? edge_codes_.other() : edge_codes_.code(listed.reference[e]));
+    }
+  }
+}
+
+template <int Dim>
+void Part<Dim>::take_marks() {
+  for (const std::uint32_t v : whole_.any.required_vertices)
+    if (local_of_[v] != none) stays_[local_of_[v]] = 1;
+  for (const std::uint32_t v : whole_.any.corners)
+    if (local_of_[v] != none) mesh_.corners.push_back(local_of_[v]);
+  for (std::size_t v = 0; v < stays_.size(); ++v)
+    if (stays_[v]) mesh_.required_vertices.push_back(static_cast<std::uint32_t>(v));
+}
+
+template <int Dim>
+AnyField Part<Dim>::metric() const {
+  AnyField field{Dim, vertices_.size(), {AnyField::Type::symmetric}, {}, mesh_.name};
+  for (const VertexId v : vertices_) {
+    const auto& m = whole_.site_of[v].metric.m;
+    field.values.insert(field.values.end(), m.begin(), m.end());
+  }
+  return field;
+}
+
+/// Kept vertices come first, in their order; then the new ones.
+template <int Dim>
+PartNumbers Part<Dim>::number_vertices(const std::vector<VertexId>& origin_of,
+                                       Renewal& renewal) const {
+  std::vector<std::uint8_t> goes(local_of_.size(), 0);
+  for (const VertexId v : vertices_) goes[v] = 1;
+  for (const VertexId v : origin_of)
+    if (v != none) goes[vertices_[v]] = 0;
+  PartNumbers numbers{std::vector<VertexId>(goes.size(), none),
+                      std::vector<VertexId>(origin_of.size(), none)};
+  for (std::size_t v = 0; v < goes.size(); ++v) {
+    if (goes[v]) continue;
+    numbers.of_old[v] = static_cast<VertexId>(renewal.size());
+    renewal.add_old(static_cast<VertexId>(v));
+  }
+  for (std::size_t v = 0; v < origin_of.size(); ++v) {
+    numbers.of_part[v] = origin_of[v] != none ? numbers.of_old[vertices_[origin_of[v]]]
+                                              : static_cast<VertexId>(renewal.size());
+    if (origin_of[v] == none) renewal.add_part(static_cast<std::uint32_t>(v));
+  }
+  return numbers;
+}
+
+template <int Dim>
+void Part<Dim>::renew_lists(AnyMesh& any, const AnyMesh& adapted,
+                            const PartNumbers& numbers) const {
+  const CellsRenewal facets(facets_in<Dim>(any), facet_passes_, facets_in<Dim>(adapted),
+                            facet_codes_, numbers);
+  facets.renew(required_facets<Dim>(any), required_facets<Dim>(adapted));
+  if constexpr (Dim == 2) facets.renew(any.ridges, adapted.ridges);
+  if constexpr (Dim == 3) {
+    const CellsRenewal edges(any.edges, edge_passes_, adapted.edges, edge_codes_, numbers);
+    edges.renew(any.required_edges, adapted.required_edges);
+    edges.renew(any.ridges, adapted.ridges);
+  }
+  for (auto* list : {&any.corners, &any.required_vertices})
+    for (std::uint32_t& v : *list) v = numbers.of_old[v];
+}
+
+template <int Dim>
+void Part<Dim>::renew_elements(MovingMesh<Dim>& whole, const AnyMesh& adapted,
+                               const PartNumbers& numbers, Renewal& renewal) const {
+  const auto& cells = elements_in<Dim>(adapted);
+  for (std::size_t e = 0; e < is_chosen_.size(); ++e)
+    if (!is_chosen_[e]) renewal.add_old(static_cast<std::uint32_t>(e));
+  for (std::size_t e = 0; e < cells.size(); ++e) renewal.add_part(static_cast<std::uint32_t>(e));
+  const auto renumbered = [](Corners<Dim> corners, const std::vector<VertexId>& number_of) {
+    for (VertexId& v : corners) v = number_of[v];
+    return corners;
+  };
+  auto& elements = elements_in<Dim>(whole.any);
+  for (std::size_t e = 0; e < is_chosen_.size(); ++e)
+    if (!is_chosen_[e]) elements.vertices[e] = renumbered(elements.vertices[e], numbers.of_old);
+  renew(elements.vertices, renewal,
+        [&](auto e) { return renumbered(cells.vertices[e], numbers.of_part); });
+  renew(elements.reference, renewal,
+        [&](auto e) { return element_codes_[cells.reference[e]].first; });
+  std::vector<std::uint32_t> index_of(is_chosen_.size(), none);
+  for (std::size_t e = 0; e < renewal.size(); ++e)
+    if (renewal.old_of[e] != none) index_of[renewal.old_of[e]] = static_cast<std::uint32_t>(e);
+  for (std::uint32_t& e : Dim == 2 ? whole.any.required_triangles : whole.any.required_tetrahedra)
+    e = index_of[e];  // these are never chosen
+  renew(whole.body_of, renewal, [&](auto e) { return element_codes_[cells.reference[e]].second; });
+  renew(whole.is_held, renewal, [](auto) { return std::uint8_t{0}; });
+  renew(whole.made_with, renewal, [](auto) { return -1.0; });  // measured when connected anew
+  renew(whole.came_with, renewal, [](auto) { return 1.0; });
+}
+
+template <int Dim>
+Renewals Part<Dim>::put_back(MovingMesh<Dim>& whole, const AdaptedMesh& adapted,
+                             const std::vector<VertexId>& origin_of) const {
+  Renewals renewals;
+  const PartNumbers numbers = number_vertices(origin_of, renewals.vertices);
+  renew_lists(whole.any, adapted.mesh, numbers);
+  renew_elements(whole, adapted.mesh, numbers, renewals.elements);
+  renew(whole.any.vertex_reference, renewals.vertices,
+        [&](auto v) { return adapted.mesh.vertex_reference[v]; });
+  renew(whole.site_of, renewals.vertices, [&](auto v) { return site_in<Dim>(adapted, v); });
+  renew(whole.speed_of, renewals.vertices, [](auto) { return Vector<Dim>{}; });
+  renew(whole.path_of, renewals.vertices, [](auto) { return none; });
+  return renewals;
+}
+
+template class Part<2>;
+template class Part<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,235 @@
+#include "move/paths.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+
+#include "core/first_bad.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/disjoint_sets.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::DisjointSets;
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+/// The mesh follows up to this far from a body's box, in units of the box's longest side, and this
+/// many times the body's longest edge.
+constexpr double reach = 1, reach_in_edges = 4;
+/// A displacement is rigid if it differs from a rigid motion by less than this share of itself.
+constexpr double rigid_tolerance = 1e-3;
+
+template <std::size_t N, class Chosen>
+void choose(const std::vector<std::array<std::uint32_t, N>>& cells,
+            const std::vector<std::int32_t>& reference_of, std::int32_t reference,
+            std::vector<std::uint8_t>& chosen, Chosen&& also) {
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (reference_of[i] == reference) {
+      for (const std::uint32_t v : cells[i]) chosen[v] = 1;
+      also(i);
+    }
+}
+
+void expect_some(bool found, const std::string& option, const std::string& what,
+                 std::int32_t reference) {
+  if (!found)
+    throw InputError(option + ": expected references of " + what + ", found " +
+                     std::to_string(reference) + ", which none has");
+}
+
+}  // namespace
+
+template <int Dim>
+Paths<Dim>::Paths(const Executor& executor, const AnyMesh& mesh, const FixedMesh<Dim>& topology,
+                  const std::vector<Vector<Dim>>& displacement_of, const MoveOptions& options)
+    : path_of_(mesh.vertex_count(), none), body_of_(topology.element_count(), 0) {
+  const bool is_named = !options.bodies.empty() || !options.boundaries.empty();
+  const std::vector<std::uint8_t> chosen =
+      is_named ? choose_named(mesh, options)
+               : choose_displaced(executor, mesh, topology, displacement_of);
+  for (std::size_t v = 0; v < chosen.size(); ++v)
+    if (chosen[v]) {
+      path_of_[v] = static_cast<std::uint32_t>(start_.size());
+      start_.push_back(topology.position_of[v]);
+      end_.push_back(start_.back() + displacement_of[v]);
+    }
+  rest_.resize(start_.size());
+  part_of_.resize(start_.size());
+  connect(executor, mesh, topology, chosen);
+  for (Part& part : parts_) fit(part);
+}
+
+template <int Dim>
+std::vector<std::uint8_t> Paths<Dim>::choose_named(const AnyMesh& mesh,
+                                                   const MoveOptions& options) {
+  std::vector<std::uint8_t> chosen(mesh.vertex_count(), 0);
+  const auto& elements = elements_in<Dim>(mesh);
+  for (const std::int32_t reference : options.bodies) {
+    bool found = false;
+    choose(elements.vertices, elements.reference, reference, chosen, [&](std::size_t e) {
+      found = true;
+      body_of_[e] = 1;
+    });
+    expect_some(found, "bodies", "elements", reference);
+  }
+  const auto& facets = facets_in<Dim>(mesh);
+  for (const std::int32_t reference : options.boundaries) {
+    bool found = false;
+    choose(facets.vertices, facets.reference, reference, chosen,
+           [&](std::size_t) { found = true; });
+    expect_some(found, "boundaries", Dim == 2 ? "edges" : "triangles", reference);
+  }
+  return chosen;
+}
+
+template <int Dim>
+std::vector<std::uint8_t> Paths<Dim>::choose_displaced(
+    const Executor& executor, const AnyMesh& mesh, const FixedMesh<Dim>& topology,
+    const std::vector<Vector<Dim>>& displacement_of) {
+  const auto& reference_of = elements_in<Dim>(mesh).reference;
+  DisjointSets regions(executor, topology.element_count());
+  parallel_for(executor, topology.element_count(), [&](std::size_t e) {
+    for (const ElementId other : topology.neighbour_of[e])
+      if (other != none && reference_of[other] == reference_of[e])
+        regions.unite(static_cast<std::uint32_t>(e), other);
+  });
+  struct Region {
+    bool has_inside = false, moves_inside = false, stays = false;
+  };
+  std::vector<Region> region_of(topology.element_count());  // [lowest element]
+  std::vector<std::uint8_t> chosen(mesh.vertex_count(), 0);
+  for (std::size_t v = 0; v < chosen.size(); ++v) {
+    const auto around = topology.elements_of(static_cast<VertexId>(v));
+    chosen[v] = dot(displacement_of[v], displacement_of[v]) > 0;
+    bool inside = !topology.on_boundary[v];
+    for (const ElementId e : around) inside = inside && regions.are_together(e, around[0]);
+    for (const ElementId e : around) {
+      Region& region = region_of[regions.lowest(e)];
+      region.stays = region.stays || !chosen[v];
+      region.has_inside = region.has_inside || inside;
+      region.moves_inside = region.moves_inside || (inside && chosen[v]);
+    }
+  }
+  for (std::size_t e = 0; e < body_of_.size(); ++e) {
+    const Region& region = region_of[regions.lowest(static_cast<std::uint32_t>(e))];
+    body_of_[e] = region.has_inside ? region.moves_inside : !region.stays;
+    if (body_of_[e] != 0)
+      for (const VertexId v : topology.corners_of[e]) chosen[v] = 1;
+  }
+  return chosen;
+}
+
+/// Numbers connected vertices: corners of an element of a body, or of a chosen facet.
+template <int Dim>
+void Paths<Dim>::connect(const Executor& executor, const AnyMesh& mesh,
+                         const FixedMesh<Dim>& topology, const std::vector<std::uint8_t>& chosen) {
+  DisjointSets sets(executor, mesh.vertex_count());
+  parallel_for(executor, body_of_.size(), [&](std::size_t e) {
+    if (body_of_[e] == 0) return;
+    for (const VertexId v : topology.corners_of[e]) sets.unite(topology.corners_of[e][0], v);
+  });
+  for (const Facet<Dim>& facet : facets_in<Dim>(mesh).vertices)
+    if (std::ranges::all_of(facet, [&](VertexId v) { return chosen[v] != 0; }))
+      for (const VertexId v : facet) sets.unite(facet[0], v);
+  std::vector<std::uint32_t> part_at(mesh.vertex_count(), none);  // [lowest vertex]
+  for (std::size_t v = 0; v < chosen.size(); ++v) {
+    if (path_of_[v] == none) continue;
+    std::uint32_t& part = part_at[sets.lowest(static_cast<std::uint32_t>(v))];
+    if (part == none) {
+      part = static_cast<std::uint32_t>(parts_.size());
+      parts_.emplace_back();
+    }
+    parts_[part].paths.push_back(path_of_[v]);
+    for (const ElementId e : topology.elements_of(static_cast<VertexId>(v)))
+      for (const VertexId w : topology.corners_of[e])
+        parts_[part].margin =
+            std::max(parts_[part].margin,
+                     reach_in_edges * norm(topology.position_of[w] - topology.position_of[v]));
+    part_of_[path_of_[v]] = part;
+  }
+  for (std::size_t e = 0; e < body_of_.size(); ++e)
+    if (body_of_[e] != 0) body_of_[e] = part_of_[path_of_[topology.corners_of[e][0]]] + 1;
+}
+
+template <int Dim>
+void Paths<Dim>::fit(Part& part) {
+  std::vector<Vector<Dim>> from, to;
+  double largest = 0, error = 0;
+  for (const std::uint32_t p : part.paths) {
+    from.push_back(start_[p]);
+    to.push_back(end_[p]);
+    largest = std::max(largest, norm(end_[p] - start_[p]));
+  }
+  part.moves = largest > 0;
+  part.motion = closest_motion(from, to);
+  for (const std::uint32_t p : part.paths) {
+    rest_[p] = end_[p] - part.motion.moved(start_[p], 1);
+    error = std::max(error, norm(rest_[p]));
+  }
+  part.is_rigid = !part.moves || error < rigid_tolerance * largest;
+}
+
+template <int Dim>
+Vector<Dim> Paths<Dim>::at(std::uint32_t path, double share) const {
+  const Part& part = parts_[part_of_[path]];
+  if (!part.moves || share == 0) return start_[path];
+  if (share == 1) return end_[path];
+  if (!part.is_rigid) return start_[path] + share * (end_[path] - start_[path]);
+  return part.motion.moved(start_[path], share) + share * rest_[path];
+}
+
+template <int Dim>
+double Paths<Dim>::first_stride() const {
+  double turn = std::numbers::pi / 4;
+  for (const Part& part : parts_)
+    if (part.is_rigid && part.moves) turn = std::max(turn, std::abs(part.motion.angle));
+  return std::numbers::pi / 4 / turn;
+}
+
+template <int Dim>
+std::vector<std::uint8_t> Paths<Dim>::within_reach(const Executor& executor,
+                                                   const std::vector<Vector<Dim>>& position_of,
+                                                   double share, double next) const {
+  struct Box {
+    Vector<Dim> low, high;
+  };
+  std::vector<Box> boxes;
+  for (const Part& part : parts_) {
+    if (!part.moves) continue;
+    Box box{at(part.paths[0], share), at(part.paths[0], share)};
+    for (const std::uint32_t p : part.paths)
+      for (const Vector<Dim>& point : {at(p, share), at(p, next)})
+        for (int i = 0; i < Dim; ++i) {
+          box.low[i] = std::min(box.low[i], point[i]);
+          box.high[i] = std::max(box.high[i], point[i]);
+        }
+    double side = 0;
+    for (int i = 0; i < Dim; ++i) side = std::max(side, box.high[i] - box.low[i]);
+    for (int i = 0; i < Dim; ++i) {
+      box.low[i] -= reach * side + part.margin;
+      box.high[i] += reach * side + part.margin;
+    }
+    boxes.push_back(box);
+  }
+  std::vector<std::uint8_t> near(position_of.size());
+  parallel_for(executor, position_of.size(), [&](std::size_t v) {
+    near[v] = std::ranges::any_of(boxes, [&](const Box& box) {
+      bool inside = true;
+      for (int i = 0; i < Dim; ++i)
+        inside = inside && position_of[v][i] >= box.low[i] && position_of[v][i] <= box.high[i];
+      return inside;
+    });
+  });
+  return near;
+}
+
+template class Paths<2>;
+template class Paths<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,119 @@
+/// @file
+/// `ductile move` and `ductile adapt -lag` on files: outputs equal the library's results, and what
+/// does not fit is refused.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
+#include "ductile/meshadapt/move.hpp"
+#include "program.hpp"
+#include "support/meshes.hpp"
+
+namespace ductile::cli::move_command_test {
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+namespace test = meshadapt::test;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A square with a body of reference 3 that has a displacement, and a field.
+struct Files {
+  explicit Files(double way) {
+    test::Grid grid = test::unit_grid(2, 12);
+    grid.region = [](const test::Cell& cell) {
+      return cell[0] >= 2 && cell[0] < 5 && cell[1] >= 5 && cell[1] < 8 ? 3 : 2;
+    };
+    mesh = test::make_grid(grid);
+    std::vector<meshadapt::Vector<2>> vectors(mesh.vertex_count());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (mesh.triangles.reference[t] == 3)
+        for (const auto v : mesh.triangles.vertices[t]) vectors[v] = {{way, 0.02}};
+    displacement = meshadapt::vector_field(vectors);
+    field = meshadapt::scalar_field(2, std::vector<double>(mesh.vertex_count(), 2));
+    meshadapt::write_mesh(path("a.mesh"), mesh);
+    meshadapt::write_field(path("u.sol"), displacement);
+    meshadapt::write_field(path("f.sol"), field);
+  }
+  std::filesystem::path path(const char* name) const { return folder.path() / name; }
+
+  Folder folder;
+  AnyMesh mesh;
+  AnyField displacement, field;
+};
+
+TEST(MoveCommand, WritesWhatTheLibraryGives) {
+  const Files files(0.4);
+  const Outcome outcome =
+      files.folder.run("move a.mesh u.sol --bodies 3 --field f.sol -o b.mesh --threads 2");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "moved 100 % of the way"));
+  const runtime::Executor executor({.threads = 1});
+  const auto fields = meshadapt::named_fields(files.field, "f");
+  const auto moved =
+      meshadapt::move(executor, files.mesh, files.displacement,
+                      {.fields = fields, .carrying = {meshadapt::Carrying::conservatively}});
+  const AnyMesh written = meshadapt::read_mesh(files.path("b.mesh"));
+  EXPECT_EQ(written.coordinates, moved.mesh.coordinates);
+  EXPECT_EQ(written.triangles, moved.mesh.triangles);
+  EXPECT_EQ(written.edges, moved.mesh.edges);
+  EXPECT_EQ(meshadapt::read_field(files.path("b.sol")).values, moved.metric.values);
+  EXPECT_EQ(meshadapt::read_field(files.path("b.f.sol")).values, moved.fields[0].values);
+}
+
+TEST(MoveCommand, MmgsOptionDoesTheSame) {
+  const Files files(0.4);
+  ASSERT_EQ(files.folder.run("move a.mesh u.sol -o b.mesh").status, 0);
+  for (const char* lag : {"1", "2"}) {
+    const Outcome outcome =
+        files.folder.run(std::string("adapt a.mesh -sol u.sol -o c.mesh -lag ") + lag);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(meshadapt::read_mesh(files.path("c.mesh")).coordinates,
+              meshadapt::read_mesh(files.path("b.mesh")).coordinates);
+  }
+  const Files far(0.55);
+  const Outcome held = far.folder.run("adapt a.mesh -lag 0 -sol u.sol -o d.mesh");
+  EXPECT_EQ(held.status, 1);
+  EXPECT_TRUE(contains(held.err, "stopped at")) << held.err;
+  const Outcome other = files.folder.run("adapt a.mesh -lag 1 -sol u.sol -hausd 1 -o d.mesh");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(contains(other.err, "options -lag and -hausd")) << other.err;
+}
+
+TEST(MoveCommand, ABlockedWayWritesNothingUnlessAsked) {
+  const Files files(0.9);
+  const Outcome blocked = files.folder.run("move a.mesh u.sol -o b.mesh");
+  EXPECT_EQ(blocked.status, 1);
+  EXPECT_TRUE(contains(blocked.err, "a.mesh: expected to move bodies all the way, stopped at"))
+      << blocked.err;
+  EXPECT_FALSE(std::filesystem::exists(files.path("b.mesh")));
+  const Outcome partial = files.folder.run("move a.mesh u.sol -o b.mesh --keep-partial");
+  EXPECT_EQ(partial.status, 1);
+  EXPECT_TRUE(contains(partial.err, "warning: the way was not gone to its end")) << partial.err;
+  EXPECT_GT(meshadapt::read_mesh(files.path("b.mesh")).triangles.size(), 0U);
+}
+
+TEST(MoveCommand, WhatDoesNotFitIsRefused) {
+  const Files files(0.1);
+  const auto refused = [&](const std::string& words, const std::string& part) {
+    const Outcome outcome = files.folder.run(words);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, part)) << outcome.err;
+  };
+  refused("move a.mesh", "expected a mesh and a displacement, found 1 word");
+  refused("move a.mesh f.sol -o b.mesh", "f.sol: expected one vector at each vertex");
+  refused("move a.mesh u.sol --bodies 3,x", "--bodies");
+  refused("move a.mesh u.sol --bodies 4", "bodies: expected references of elements, found 4");
+  refused("move a.mesh u.sol -met f.sol -hsiz 1", "options -met and -hsiz");
+  refused("move a.mesh u.sol -o u.sol", "u.sol");
+}
+
+}  // namespace
+}  // namespace ductile::cli::move_command_test
