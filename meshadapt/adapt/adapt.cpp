@@ -62,6 +62,7 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, Metric
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
     adapted = mesh.dimension == 2 ? adapt_in<2>(executor, mesh, source, options)
+              : is_surface(mesh)  ? adapt_in<2, 3>(executor, mesh, source, options)
                                   : adapt_in<3>(executor, mesh, source, options);
   });
   adapted.mesh.names = mesh.names;

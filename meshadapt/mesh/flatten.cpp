@@ -66,10 +66,6 @@ bool is_flat(const std::array<Range, 3>& range_of, std::size_t axis) {
   return range_of[axis].width() <= share * across + rounding;
 }
 
-bool is_surface(const AnyMesh& mesh) {
-  return mesh.dimension == 3 && mesh.tetrahedra.size() == 0 && mesh.triangles.size() != 0;
-}
-
 void drop(AnyMesh& mesh, std::size_t axis) {
   double* to = mesh.coordinates.data();
   for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)

@@ -32,7 +32,7 @@ std::size_t components(const NamedField& field, int dimension) {
 
 std::size_t entity_count(const AnyMesh& mesh, Where place) {
   if (place == Where::vertices) return mesh.vertex_count();
-  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  return element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
 /// The name of a field in messages.
