@@ -63,10 +63,21 @@ if(TARGET ductile)
   install(TARGETS ductile RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/ductile.bash RENAME ductile
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/_ductile
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/ductile.fish
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
   if(NOT CMAKE_CROSSCOMPILING)
     install(FILES ${PROJECT_BINARY_DIR}/meshadapt/cli/ductile.1
       DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
   endif()
+endif()
+
+if(TARGET ductile_python_module)
+  set(ductile_python_dir lib/python3/dist-packages/ductile)  # Debian's, for all versions of Python
+  install(TARGETS ductile_python_module LIBRARY DESTINATION ${ductile_python_dir} COMPONENT python)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/doors/python/ductile/ DESTINATION ${ductile_python_dir} COMPONENT python
+    FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed PATTERN __pycache__ EXCLUDE)
 endif()
 
 get_target_property(ductile_library_type ductile_runtime TYPE)

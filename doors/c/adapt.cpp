@@ -167,7 +167,7 @@ int ductile_solution_metric(const ductile_mesh* mesh, int components, const doub
     c::expect_given(metric, "metric");
     const auto found = meshadapt::solution_metric(runtime::Executor(options->executor), mesh->mesh,
                                                   c::solution_of(mesh->mesh, components, values),
-                                                  c::goal_of(mesh->mesh, *options));
+                                                  c::goal_of(*options));
     std::copy(found.metric.values.begin(), found.metric.values.end(), metric);
   });
 }

@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
+#include "extents.hpp"
 #include "files.hpp"
 #include "report.hpp"
 #include "run_in_team.hpp"
@@ -94,25 +95,75 @@ void print_counts(const AnyMesh& mesh) {
     std::printf("  %-12s %12s\n", "ridges", with_commas(mesh.ridges.size()).c_str());
 }
 
-/// The names of references, each with how many entities carry it.
-std::string names_json(const AnyMesh& mesh) {
+/// "  area         12: reference 1 (steel) 4, 2 (air) 8".
+void print_sizes(const AnyMesh& mesh, int dimension, const Extents& extents) {
+  constexpr std::array words = {"", "length", "area", "volume"};
+  constexpr std::size_t shown_at_most = 12;
+  std::string text;
+  std::size_t shown = 0;
+  for (const auto& [key, size] : extents.size_of) {
+    if (key.first != dimension || shown++ >= shown_at_most) continue;
+    std::array<char, 64> figures;
+    std::snprintf(figures.data(), figures.size(), "%.6g", size);
+    text += (shown == 1 ? "reference " : ", ") + std::to_string(key.second) +
+            name_after(mesh, dimension, key.second) + ": " + figures.data();
+  }
+  if (shown == 0) return;
+  std::printf("  %-12s %12.6g  %s%s\n", words.at(static_cast<std::size_t>(dimension)),
+              extents.total(dimension), text.c_str(), shown > shown_at_most ? ", ..." : "");
+}
+
+void print_extents(const AnyMesh& mesh, const Extents& extents) {
+  std::printf("  %-12s", "box");
+  for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.dimension); ++k)
+    std::printf("%s %.6g to %.6g", k == 0 ? "" : ",", extents.low[k], extents.high[k]);
+  std::printf("\n");
+  for (int dimension = 1; dimension <= 3; ++dimension) print_sizes(mesh, dimension, extents);
+  if (extents.largest_angle > 0)
+    std::printf("  %-12s %.3g to %.4g degrees%s\n", "angles", extents.smallest_angle,
+                extents.largest_angle, mesh.dimension == 3 ? ", dihedral" : "");
+}
+
+std::string json_of(const Extents& extents, int dimension) {
+  std::string low, high;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) {
+    low += (k == 0 ? "" : ", ") + json_number(extents.low[k]);
+    high += (k == 0 ? "" : ", ") + json_number(extents.high[k]);
+  }
+  return "{\"low\": [" + low + "], \"high\": [" + high +
+         "], \"length\": " + json_number(extents.total(1)) +
+         ", \"area\": " + json_number(extents.total(2)) +
+         ", \"volume\": " + json_number(extents.total(3)) +
+         ", \"smallest_angle\": " + json_number(extents.smallest_angle) +
+         ", \"largest_angle\": " + json_number(extents.largest_angle) + "}";
+}
+
+/// The names of references, each with how many entities carry it, and their length, area or volume.
+std::string names_json(const AnyMesh& mesh, const Extents& extents) {
   const std::array references{&mesh.vertex_reference, &mesh.edges.reference,
                               &mesh.triangles.reference, &mesh.tetrahedra.reference};
   std::map<std::pair<int, std::int32_t>, std::size_t> count_of;  // [dimension, reference]
   for (int dimension = 0; dimension <= 3 && !mesh.names.empty(); ++dimension)
     for (const std::int32_t reference : *references[static_cast<std::size_t>(dimension)])
       ++count_of[{dimension, reference}];
+  const auto size_at = [&](int dimension, std::int32_t reference) {
+    const auto found = extents.size_of.find({dimension, reference});
+    return found == extents.size_of.end() ? 0 : found->second;
+  };
   std::string text;
   for (const auto& [dimension, reference, name] : mesh.names)
     text += std::string(text.empty() ? "" : ", ") + "{\"name\": " + json_string(name) +
             ", \"dimension\": " + std::to_string(dimension) +
             ", \"reference\": " + std::to_string(reference) +
-            ", \"count\": " + std::to_string(count_of[{dimension, reference}]) + "}";
+            ", \"count\": " + std::to_string(count_of[{dimension, reference}]) +
+            (dimension == 0 ? "" : ", \"size\": " + json_number(size_at(dimension, reference))) +
+            "}";
   return "[" + text + "]";
 }
 
 void write_json(const std::filesystem::path& path, const AnyMesh& mesh, const Validity& validity,
                 const std::string& statistics) {
+  const Extents extents = extents_of(mesh);
   meshadapt::AtomicOutputs outputs;
   put_json(outputs, path,
            "{\"mesh\": " + json_string(mesh.name) +
@@ -121,8 +172,9 @@ void write_json(const std::filesystem::path& path, const AnyMesh& mesh, const Va
                ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
                ", \"edges\": " + std::to_string(mesh.edges.size()) +
                ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
-               ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
-               ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics + "}\n");
+               ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) + ", \"extents\": " +
+               json_of(extents, mesh.dimension) + ", \"names\": " + names_json(mesh, extents) +
+               ", \"statistics\": " + statistics + "}\n");
   outputs.commit();
 }
 
@@ -138,6 +190,7 @@ int work(const Executor& executor, const Arguments& arguments) {
   const auto json = json_output(arguments);
   const bool shown = json != standard_output;
   if (shown) print_counts(mesh);
+  if (shown) print_extents(mesh, extents_of(mesh));
   const Validity validity = check(executor, mesh, given);
   warnings.insert(warnings.end(), validity.warnings.begin(), validity.warnings.end());
   if (shown)
@@ -170,7 +223,7 @@ int run(const Arguments& arguments) {
 const Command info_command{
     "info",
     "MESH [-sol METRIC]",
-    "counts, references, validity, edge lengths and quality of a mesh",
+    "counts, references, sizes, validity, edge lengths and quality of a mesh",
     "Without a metric, lengths and quality are those of plain Euclidean geometry.",
     options,
     run};

@@ -51,6 +51,7 @@ std::string histogram(const Distribution& d) {
   if (d.below > 0)
     text += histogram_line(format("below %.3g", d.histogram_from), d.below, most, d.count);
   for (std::size_t bin = 0; bin < d.histogram.size(); ++bin) {
+    if (d.histogram[bin] == 0) continue;
     const double from = d.histogram_from + width * static_cast<double>(bin);
     text +=
         histogram_line(format("%.3g to %.3g", from, from + width), d.histogram[bin], most, d.count);

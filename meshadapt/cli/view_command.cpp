@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 #include "picture/draw.hpp"
+#include "picture/page.hpp"
 #include "run_in_team.hpp"
 #include "shown_field.hpp"
 
@@ -20,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<Option, 6> options{{
-    {"-o", "PICTURE", "where the picture goes: a name ending in .png or .svg (default NAME.png)",
+    {"-o", "PICTURE",
+     "where it goes: a .png, .svg, or .html to turn and cut it in a browser (default: NAME.png)",
      "--output"},
     {"-sol", "FILE", "the metric that quality is measured in, or to show; the fields of --by"},
     {"--by", "quality|size|reference|metric|FIELD",
@@ -48,17 +50,22 @@ int axis_of(const Arguments& arguments) {
   return static_cast<int>(index);
 }
 
-PictureFormat format_of(const fs::path& picture) {
+/// None for a page.
+std::optional<PictureFormat> format_of(const fs::path& picture, Tint tint) {
   if (picture.extension() == ".png") return PictureFormat::png;
   if (picture.extension() == ".svg") return PictureFormat::svg;
-  throw UsageError(picture.string() + ": expected a name ending in .png or .svg");
+  if (picture.extension() != ".html")
+    throw UsageError(picture.string() + ": expected a name ending in .png, .svg or .html");
+  if (tint == Tint::metric)
+    throw UsageError(picture.string() + ": ellipses of --by metric are drawn in a .png or .svg");
+  return std::nullopt;
 }
 
 struct Job {
   fs::path input, picture;
   std::optional<fs::path> sol;
   std::string by;
-  PictureFormat format = PictureFormat::png;
+  std::optional<PictureFormat> format;  ///< none: a page
   SceneOptions scene;
   int size = 1000, threads = 0;
 };
@@ -72,8 +79,8 @@ Job read_job(const Arguments& arguments) {
   if (job.picture.empty()) job.picture = fs::path(job.input).replace_extension(".png");
   job.sol = arguments.text("-sol");
   job.by = arguments.text("--by").value_or("quality");
-  job.format = format_of(job.picture);
   job.scene = {.tint = tint_of(job.by), .cut_axis = axis_of(arguments)};
+  job.format = format_of(job.picture, job.scene.tint);
   job.size = arguments.integer("--size", 50, 8000).value_or(1000);
   job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
   meshadapt::check_writable(job.picture);
@@ -118,9 +125,11 @@ int work(const runtime::Executor& executor, const Job& job) {
     field = field_of(job, file, warnings);
     options_of_scene.field = &field;
   }
-  const Scene scene =
-      make_scene(executor, file.mesh, metric ? &*metric : nullptr, options_of_scene);
-  const std::string bytes = draw(scene, job.format, job.size);
+  const meshadapt::AnyField* const shown = metric ? &*metric : nullptr;
+  const std::string bytes =
+      job.format
+          ? draw(make_scene(executor, file.mesh, shown, options_of_scene), *job.format, job.size)
+          : turning_page(executor, file.mesh, shown, options_of_scene);
   meshadapt::AtomicOutputs outputs;
   write_bytes(outputs, job.picture, bytes);
   outputs.commit();
@@ -138,7 +147,7 @@ int run(const Arguments& arguments) {
 
 const Command view_command{
     "view",
-    "MESH [-o PICTURE.png|.svg]",
+    "MESH [-o PICTURE.png|.svg|.html]",
     "draws a mesh",
     "2D: the triangles. 3D: the surface, and a cut through the middle. A FIELD is one of FILE, "
     "else\n"

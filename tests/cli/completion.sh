@@ -51,6 +51,15 @@ for command in "${commands[@]}"; do
   expect "options of $command" "$(sort <<<"$all")" "$(complete_words "$command" -)"
   expect "options of $command" "$(sed -E 's/^-{1,2}/--/' <<<"$all" | sort -u)" \
     "$(complete_words "$command" --)"
+  if command -v zsh >/dev/null; then
+    expect "options of $command in zsh" "$(sort <<<"$all")" "$(zsh -f -c '. "$1"; _ductile_specs "$2" "$3"' zsh \
+      "$source/meshadapt/cli/help/_ductile" "$program" "$command" | sed 's/^\*//; s/\[.*//' | sort)"
+  fi
+  if command -v fish >/dev/null; then
+    expect "options of $command in fish" "$(sort <<<"$all")" "$(PATH=$(dirname "$program"):$PATH fish --no-config -c \
+      'source $argv[1]; complete -C "ductile $argv[2] -"' "$source/meshadapt/cli/help/ductile.fish" "$command" |
+      cut -f 1 | sort)"
+  fi
   expect "the manual on $command" "$lines" "$(
     sed -n "/^\.SS ductile $command /,/^\.S[SH] /p" "$page" | sed 's/\\f[BIR]//g; s/\\-/-/g' |
       sed -n '/^\.TP$/{n; /^-/p}')"

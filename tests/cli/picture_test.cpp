@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "picture/draw.hpp"
 #include "picture/ellipses.hpp"
+#include "picture/page.hpp"
 #include "picture/scene.hpp"
 #include "picture/ticks.hpp"
 #include "shown_field.hpp"
@@ -275,6 +276,47 @@ TEST(Colours, GoFromOneEndToTheOther) {
   EXPECT_EQ(quality_colour(2), quality_colour(1));
   EXPECT_EQ(size_colour(std::nan("")), size_colour(0));
   EXPECT_EQ(reference_colour(-10), reference_colour(0));
+}
+
+// ---- Pages ----
+
+/// How many bytes the array of this name has in a page.
+std::size_t bytes_of(const std::string& page, const std::string& name) {
+  const std::string begin = "\"" + name + "\": \"";
+  const std::size_t at = page.find(begin) + begin.size(), end = page.find('"', at);
+  const std::string text = page.substr(at, end - at);
+  return text.size() / 4 * 3 - static_cast<std::size_t>(std::count(text.begin(), text.end(), '='));
+}
+
+TEST(Page, HasAllOfTheMeshAndNothingFromElsewhere) {
+  AnyMesh mesh = two_tetrahedra();
+  mesh.names = {{2, 7, "</script><b>wall & \"door\""}};
+  mesh.triangles.add({0, 2, 3}, 8);
+  const std::string page = turning_page(runtime::Executor({.threads = 1}), mesh, nullptr, {});
+  EXPECT_EQ(bytes_of(page, "points"), 12 * mesh.vertex_count());
+  EXPECT_EQ(bytes_of(page, "elements"), 16 * mesh.tetrahedra.size());
+  EXPECT_EQ(bytes_of(page, "colours"), 3 * mesh.tetrahedra.size());
+  EXPECT_EQ(bytes_of(page, "listed"), 12 * mesh.triangles.size());
+  EXPECT_EQ(bytes_of(page, "listedColours"), 3 * mesh.triangles.size());
+  EXPECT_EQ(page.find("://"), std::string::npos);
+  EXPECT_EQ(page.find("@DATA@"), std::string::npos);
+  EXPECT_EQ(page.find("@CAPTION@"), std::string::npos);
+  EXPECT_EQ(page.find("</script>"), page.rfind("</script>"));  // a name does not end it
+  EXPECT_NE(page.find("wall & \\\"door\\\" (7)"), std::string::npos);
+}
+
+TEST(Page, HasAFlatMeshAndASurfaceToo) {
+  EXPECT_EQ(
+      bytes_of(turning_page(runtime::Executor({.threads = 1}), square(), nullptr, {}), "elements"),
+      24U);
+  AnyMesh surface = two_tetrahedra();
+  surface.tetrahedra = {};
+  EXPECT_EQ(
+      bytes_of(turning_page(runtime::Executor({.threads = 1}), surface, nullptr, {}), "elements"),
+      12U);
+  surface.triangles = {};
+  EXPECT_THROW(turning_page(runtime::Executor({.threads = 1}), surface, nullptr, {}),
+               meshadapt::InputError);
 }
 
 TEST(Draw, RefusesAnSvgOfTooManyPolygons) {

@@ -3,11 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "extents.hpp"
+
 namespace ductile::cli::program_test {
 namespace {
+
+using meshadapt::AnyMesh;
+using meshadapt::Side;
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -101,7 +108,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt", "expected one mesh, found 0");
   expect("adapt a.mesh b.mesh", "expected one mesh, found 2; -o says where");
   expect("adapt a.mesh -o b.xyz", "ending in .mesh, .meshb");
-  expect("view a.mesh -o b.gif", "ending in .png or .svg");
+  expect("view a.mesh -o b.gif", "ending in .png, .svg or .html");
   expect("view a.mesh --cut w", "x, y or z");
   expect("convert a.mesh", "expected an input and an output");
   expect("convert a.mesh a.sol", "as the input is a mesh");
@@ -127,6 +134,34 @@ TEST(Info, CountsAndMeasures) {
   for (const char* part : {"dimension 3", "1,331", "6,000", "valid", "quality", "[0.71, 1.41]"})
     EXPECT_TRUE(contains(outcome.out, part)) << part << "\n" << outcome.out;
   EXPECT_TRUE(contains(folder.read("info.json"), "\"tetrahedra\": 6000"));
+  EXPECT_TRUE(contains(folder.read("info.json"), "\"volume\": "));
+  EXPECT_FALSE(contains(outcome.out, " 0.00 %")) << outcome.out;
+}
+
+TEST(Info, TellsSizesByReference) {
+  for (const int dimension : {2, 3}) {
+    AnyMesh mesh = dimension == 2 ? meshadapt::box_mesh<2>({3, 2}, {6, 4})
+                                  : meshadapt::box_mesh<3>({3, 2, 1}, {6, 4, 2});
+    auto& reference = dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
+    for (std::size_t e = 0; e < reference.size(); e += 3) reference[e] = 4;
+    const Extents found = extents_of(mesh);
+    EXPECT_EQ(found.low, (std::array<double, 3>{}));
+    EXPECT_EQ(found.high, (std::array<double, 3>{3, 2, dimension == 2 ? 0.0 : 1.0}));
+    EXPECT_NEAR(found.total(dimension), 6, 1e-12);
+    EXPECT_NEAR(found.total(dimension - 1), dimension == 2 ? 10 : 22, 1e-12);
+    EXPECT_NEAR(found.size_of.at({dimension, 4}), 2, 1e-12);
+    EXPECT_NEAR(found.size_of.at({dimension - 1, Side::left}), 2, 1e-12);
+    EXPECT_NEAR(found.size_of.at({dimension - 1, Side::top}), 3, 1e-12);
+    EXPECT_NEAR(found.smallest_angle, 45, 1e-9);
+    EXPECT_NEAR(found.largest_angle, 90, 1e-9);
+  }
+  AnyMesh regular;  // its angles are all arccos(1/3)
+  regular.dimension = 3;
+  regular.coordinates = {1, 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1};
+  regular.vertex_reference = {0, 0, 0, 0};
+  regular.tetrahedra.add({0, 1, 2, 3}, 1);
+  EXPECT_NEAR(extents_of(regular).smallest_angle, 70.528779365509308, 1e-9);
+  EXPECT_NEAR(extents_of(regular).largest_angle, 70.528779365509308, 1e-9);
 }
 
 TEST(Info, SaysWhyAMeshIsNotValid) {

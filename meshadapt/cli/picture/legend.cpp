@@ -14,12 +14,12 @@
 
 namespace ductile::cli {
 
-namespace {
-
-Colour scale_colour(const Legend& legend, double t) {
-  if (legend.tint == Tint::quality) return quality_colour(t);
-  return size_colour(legend.tint == Tint::field && legend.from == legend.to ? 0.5 : t);
+Colour scale_colour(const Legend& legend, double share) {
+  if (legend.tint == Tint::quality) return quality_colour(share);
+  return size_colour(legend.tint == Tint::field && legend.from == legend.to ? 0.5 : share);
 }
+
+namespace {
 
 /// Marks at every fifth of the scale.
 std::vector<Tick> even_ticks(const Legend& legend) {

@@ -14,6 +14,9 @@ struct LegendPlace {
   double x, y, width, text, room;
 };
 
+/// The colour at a share from 0 to 1 of a scale.
+Colour scale_colour(const Legend& legend, double share);
+
 void draw_legend(cairo_t* pen, const Legend& legend, LegendPlace place);
 
 }  // namespace ductile::cli

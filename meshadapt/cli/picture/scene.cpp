@@ -109,13 +109,6 @@ Tinting no_tint(const AnyMesh& mesh) {
   return {.colour_of = std::vector<Colour>(elements, Colour{0.97, 0.97, 0.97})};
 }
 
-Tinting tinting_of(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
-                   const SceneOptions& options) {
-  if (options.tint == Tint::metric) return no_tint(mesh);
-  if (options.tint == Tint::field) return tint_by_field(mesh, *options.field);
-  return tint_elements(executor, mesh, metric, options.tint);
-}
-
 }  // namespace
 
 std::size_t Scene::face_count() const {
@@ -156,6 +149,13 @@ Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
       result.colour_of.push_back(quality_colour(quality));
   }
   return result;
+}
+
+Tinting tinting_of(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+                   const SceneOptions& options) {
+  if (options.tint == Tint::metric) return no_tint(mesh);
+  if (options.tint == Tint::field) return tint_by_field(mesh, *options.field);
+  return tint_elements(executor, mesh, metric, options.tint);
 }
 
 Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,

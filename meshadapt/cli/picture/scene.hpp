@@ -92,6 +92,9 @@ struct Tinting {
 Tinting tint_by_field(const meshadapt::AnyMesh& mesh, const meshadapt::NamedField& field);
 Tinting tint_elements(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
                       const meshadapt::AnyField* metric, Tint tint);
+/// By whichever of them the options ask for.
+Tinting tinting_of(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                   const meshadapt::AnyField* metric, const SceneOptions& options);
 
 Panel panel_2d(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of);
 
