@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -29,7 +30,7 @@ namespace {
 /// The number of the facet that is the triangle, in an element without a fourth corner.
 constexpr int boundary_facet = 3;
 
-/// The curve of an edge of a surface in either form.
+/// The next corner of a triangle.
 constexpr std::size_t next(std::size_t corner) { return (corner + 1) % 3; }
 
 /// A surface as the boundary of elements that have no fourth corner; without patches and curves.
@@ -91,33 +92,72 @@ struct TriangleEdge {
   friend auto operator<=>(const TriangleEdge&, const TriangleEdge&) = default;
 };
 
-class SurfaceMeshMaker {
+/// Edges that are passed by triangles, of two by both in the same direction.
+class Edges {
  public:
-  SurfaceMeshMaker(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options,
-                   Neighbours<2>& neighbours, std::vector<std::string>& warnings)
-      : executor_(executor),
-        any_(any),
-        options_(options),
-        neighbours_(neighbours),
-        warnings_(warnings) {}
+  Edges(const Executor& executor, const std::vector<Corners<2>>& triangles)
+      : edges_(runtime::make_unset_vector<TriangleEdge>(executor, 3 * triangles.size())) {
+    parallel_for(executor, triangles.size(), [&](std::size_t e) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexId a = triangles[e][i], b = triangles[e][next(i)];
+        edges_[3 * e + i] = {edge_key(a, b), static_cast<ElementId>(e), a};
+      }
+    });
+    runtime::parallel_sort(executor, std::span(edges_));
+  }
 
-  Mesh<2, 3> make() {
-    check_input<2, 3>(executor_, any_, options_);
-    choose();
-    orient();
-    fill();
-    rebuild_elements_of(executor_, mesh_);
-    report_unused_vertices();
-    find_neighbours();
-    classify();
-    return std::move(mesh_);
+  /// Calls visit(run) with the passes of each edge.
+  void each(auto&& visit) const {
+    for (std::size_t begin = 0, end = 0; begin < edges_.size(); begin = end) {
+      while (end < edges_.size() && edges_[end].key == edges_[begin].key) ++end;
+      visit(std::span(edges_).subspan(begin, end - begin));
+    }
+  }
+
+  /// Edges of two triangles that are turned in opposite ways.
+  std::vector<SideKey> seams() const {
+    std::vector<SideKey> seams;
+    each([&](std::span<const TriangleEdge> run) {
+      if (run.size() == 2 && run[0].from == run[1].from) seams.push_back(run[0].key);
+    });
+    return seams;
+  }
+
+  /// The other triangle at an edge of two, and whether it is turned in the opposite way.
+  std::pair<ElementId, bool> across(SideKey key, ElementId triangle) const {
+    const auto at = std::lower_bound(edges_.begin(), edges_.end(), TriangleEdge{key, 0, 0});
+    if (edges_.end() - at < 2 || at[1].key != key || (edges_.end() - at > 2 && at[2].key == key))
+      return {none, false};
+    return {at[0].triangle == triangle ? at[1].triangle : at[0].triangle, at[0].from == at[1].from};
   }
 
  private:
-  void warn(const std::string& text) { warnings_.push_back(any_.name + ": " + text); }
+  runtime::UnsetVector<TriangleEdge> edges_;  // sorted
+};
 
-  // ---- Triangles that count ----
+/// Leaves triangles out and turns them, see mended_surface().
+class SurfaceMender {
+ public:
+  SurfaceMender(const Executor& executor, const AnyMesh& any, std::vector<std::string>& warnings)
+      : executor_(executor), any_(any), warnings_(warnings) {}
 
+  std::optional<AnyMesh> run() {
+    choose();
+    orient();
+    if (warnings_said_ == 0) return std::nullopt;
+    AnyMesh mended = any_;
+    mended.triangles.vertices = corners_;
+    for (std::size_t e = 0; e < chosen_.size(); ++e)
+      mended.triangles.reference[e] = any_.triangles.reference[chosen_[e]];
+    mended.triangles.reference.resize(chosen_.size());
+    mended.required_triangles.clear();
+    const auto required = marked(any_, any_.triangles.size(), any_.required_triangles, "triangle");
+    for (std::uint32_t e = 0; e < chosen_.size(); ++e)
+      if (required[chosen_[e]]) mended.required_triangles.push_back(e);
+    return mended;
+  }
+
+ private:
   std::array<Vector<3>, 3> points(std::size_t t) const {
     std::array<Vector<3>, 3> p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = position_in<3>(any_, any_.triangles.vertices[t][i]);
@@ -150,9 +190,11 @@ class SurfaceMeshMaker {
   void report(const std::vector<std::uint8_t>& flags, std::uint8_t flag, const std::string& what) {
     const auto first = std::find(flags.begin(), flags.end(), flag);
     if (first == flags.end()) return;
-    warn(std::to_string(std::count(flags.begin(), flags.end(), flag)) + " of " +
-         std::to_string(flags.size()) + " triangles " + what + "; the first is " +
-         entity("triangle", static_cast<std::size_t>(first - flags.begin())));
+    ++warnings_said_;
+    warnings_.push_back(any_.name + ": " +
+                        std::to_string(std::count(flags.begin(), flags.end(), flag)) + " of " +
+                        std::to_string(flags.size()) + " triangles " + what + "; the first is " +
+                        entity("triangle", static_cast<std::size_t>(first - flags.begin())));
   }
 
   // ---- Orientation: neighbours pass their common edge in opposite directions ----
@@ -161,64 +203,33 @@ class SurfaceMeshMaker {
     corners_.resize(chosen_.size());
     parallel_for(executor_, chosen_.size(),
                  [&](std::size_t e) { corners_[e] = any_.triangles.vertices[chosen_[e]]; });
-    find_edges();
-    if (!has_disagreement()) return;
+    const Edges edges(executor_, corners_);
+    if (edges.seams().empty()) return;
     std::vector<std::uint8_t> turned(corners_.size(), none_yet);
     std::vector<ElementId> part;
     for (ElementId seed = 0; seed < corners_.size(); ++seed)
-      if (turned[seed] == none_yet) turn_part(seed, turned, part);
+      if (turned[seed] == none_yet) turn_part(edges, seed, turned, part);
     std::vector<std::uint8_t> listed(any_.triangles.size(), 0);
     for (std::size_t e = 0; e < corners_.size(); ++e) {
       listed[chosen_[e]] = turned[e];
       if (turned[e] != 0) std::swap(corners_[e][1], corners_[e][2]);
     }
-    report(listed, 1, "were turned, as their neighbours are");
-    find_edges();
-    each_run([&](std::span<const TriangleEdge> run) {
-      if (run.size() == 2 && run[0].from == run[1].from) seams_.push_back(run[0].key);
-    });
-    if (!seams_.empty())
-      warn("the surface has one side only: " + std::to_string(seams_.size()) +
-           " edges, where neighbours cannot be turned alike, are kept as curves");
-  }
-
-  void find_edges() {
-    edges_ = runtime::make_unset_vector<TriangleEdge>(executor_, 3 * corners_.size());
-    parallel_for(executor_, corners_.size(), [&](std::size_t e) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const VertexId a = corners_[e][i], b = corners_[e][next(i)];
-        edges_[3 * e + i] = {edge_key(a, b), static_cast<ElementId>(e), a};
-      }
-    });
-    runtime::parallel_sort(executor_, std::span(edges_));
-  }
-
-  void each_run(auto&& visit) const {
-    for (std::size_t begin = 0, end = 0; begin < edges_.size(); begin = end) {
-      while (end < edges_.size() && edges_[end].key == edges_[begin].key) ++end;
-      visit(std::span(edges_).subspan(begin, end - begin));
-    }
-  }
-
-  bool has_disagreement() const {
-    bool any = false;
-    each_run([&](std::span<const TriangleEdge> run) {
-      any = any || (run.size() == 2 && run[0].from == run[1].from);
-    });
-    return any;
+    report(listed, 1, "were turned as most of their neighbours are");
   }
 
   /// Turns what is connected with a triangle by edges of two as that is, or as most of it is.
-  void turn_part(ElementId seed, std::vector<std::uint8_t>& turned, std::vector<ElementId>& part) {
+  void turn_part(const Edges& edges, ElementId seed, std::vector<std::uint8_t>& turned,
+                 std::vector<ElementId>& part) const {
     part.assign(1, seed);
     turned[seed] = 0;
     std::size_t count = 0;
     for (std::size_t at = 0; at < part.size(); ++at)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto& corners = corners_[part[at]];
-        const auto [other, same] = across({edge_key(corners[i], corners[next(i)]), 0, 0}, part[at]);
+        const auto [other, opposite] =
+            edges.across(edge_key(corners[i], corners[next(i)]), part[at]);
         if (other == none || turned[other] != none_yet) continue;
-        turned[other] = turned[part[at]] ^ static_cast<std::uint8_t>(same);
+        turned[other] = turned[part[at]] ^ static_cast<std::uint8_t>(opposite);
         count += turned[other];
         part.push_back(other);
       }
@@ -226,14 +237,39 @@ class SurfaceMeshMaker {
       for (const ElementId e : part) turned[e] ^= 1U;
   }
 
-  /// The other triangle at an edge of two, and whether both pass it in the same direction.
-  std::pair<ElementId, bool> across(const TriangleEdge& edge, ElementId triangle) const {
-    const auto at = std::lower_bound(edges_.begin(), edges_.end(), edge);
-    if (edges_.end() - at < 2 || at[1].key != edge.key ||
-        (edges_.end() - at > 2 && at[2].key == edge.key))
-      return {none, false};
-    return {at[0].triangle == triangle ? at[1].triangle : at[0].triangle, at[0].from == at[1].from};
+  static constexpr std::uint8_t none_yet = 2;
+
+  const Executor& executor_;
+  const AnyMesh& any_;
+  std::vector<std::string>& warnings_;
+  std::size_t warnings_said_ = 0;
+  std::vector<std::uint32_t> chosen_;  // [triangle], its number in the file
+  std::vector<Corners<2>> corners_;    // [triangle]
+};
+
+class SurfaceMeshMaker {
+ public:
+  SurfaceMeshMaker(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options,
+                   Neighbours<2>& neighbours, std::vector<std::string>& warnings)
+      : executor_(executor),
+        any_(any),
+        options_(options),
+        neighbours_(neighbours),
+        warnings_(warnings),
+        corners_(any.triangles.vertices),
+        edges_(executor, corners_) {}
+
+  Mesh<2, 3> make() {
+    fill();
+    rebuild_elements_of(executor_, mesh_);
+    report_unused_vertices();
+    find_neighbours();
+    classify();
+    return std::move(mesh_);
   }
+
+ private:
+  void warn(const std::string& text) { warnings_.push_back(any_.name + ": " + text); }
 
   // ---- The mesh ----
 
@@ -286,9 +322,8 @@ class SurfaceMeshMaker {
     const auto required = marked(any_, any_.triangles.size(), any_.required_triangles, "triangle");
     std::vector<TaggedFacet<3>> facets(corners_.size());
     parallel_for(executor_, facets.size(), [&](std::size_t e) {
-      const std::uint32_t t = chosen_[e];
       facets[e].corners = corners_[e];
-      facets[e].data = {{}, any_.triangles.reference[t], true, required[t]};
+      facets[e].data = {{}, any_.triangles.reference[e], true, required[e]};
       facets[e].element = static_cast<ElementId>(e);
       facets[e].facet = boundary_facet;
     });
@@ -296,8 +331,12 @@ class SurfaceMeshMaker {
   }
 
   /// Edges that are listed, that cannot be smooth, or that shall stay.
-  std::vector<ListedEdge> listed_edges(MeshInMaking<3>& making) const {
+  std::vector<ListedEdge> listed_edges(MeshInMaking<3>& making) {
     std::vector<ListedEdge> edges = tag_edges(making);
+    const std::vector<SideKey> seams = edges_.seams();
+    if (!seams.empty())
+      warn("the surface has one side only: " + std::to_string(seams.size()) +
+           " edges, where neighbours cannot be turned alike, are kept as curves");
     std::map<SideKey, std::size_t> index_of;
     for (std::size_t i = 0; i < edges.size(); ++i)
       index_of.emplace(edge_key(edges[i].a, edges[i].b), i);
@@ -306,9 +345,9 @@ class SurfaceMeshMaker {
       if (is_new) edges.push_back({static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key)});
       edges[at->second].required = edges[at->second].required || required;
     };
-    for (const SideKey key : seams_) keep(key, false);
+    for (const SideKey key : seams) keep(key, false);
     if (options_.lock_boundary)
-      each_run([&](std::span<const TriangleEdge> run) {
+      edges_.each([&](std::span<const TriangleEdge> run) {
         if (run.size() == 1) keep(run[0].key, true);
       });
     return edges;
@@ -355,18 +394,14 @@ class SurfaceMeshMaker {
     }
   }
 
-  static constexpr std::uint8_t none_yet = 2;
-
   const Executor& executor_;
   const AnyMesh& any_;
   const MakeMeshOptions& options_;
   Neighbours<2>& neighbours_;
   std::vector<std::string>& warnings_;
   Mesh<2, 3> mesh_;
-  std::vector<std::uint32_t> chosen_;         // [element], its number in the file
-  std::vector<Corners<2>> corners_;           // [element]
-  runtime::UnsetVector<TriangleEdge> edges_;  // of all elements, sorted
-  std::vector<SideKey> seams_;                // where neighbours cannot be turned alike
+  const std::vector<Corners<2>>& corners_;  // [element]
+  Edges edges_;
 };
 
 }  // namespace
@@ -374,7 +409,16 @@ class SurfaceMeshMaker {
 Mesh<2, 3> make_surface_mesh(const Executor& executor, const AnyMesh& any,
                              const MakeMeshOptions& options, Neighbours<2>& neighbours,
                              std::vector<std::string>& warnings) {
-  return SurfaceMeshMaker(executor, any, options, neighbours, warnings).make();
+  check_input<2, 3>(executor, any, options);
+  const auto mended = SurfaceMender(executor, any, warnings).run();
+  return SurfaceMeshMaker(executor, mended ? *mended : any, options, neighbours, warnings).make();
+}
+
+std::optional<AnyMesh> mended_surface(const Executor& executor, const AnyMesh& any,
+                                      const MakeMeshOptions& options,
+                                      std::vector<std::string>& warnings) {
+  check_input<2, 3>(executor, any, options);
+  return SurfaceMender(executor, any, warnings).run();
 }
 
 void bound_curved_sizes(const Executor& executor, const Mesh<2, 3>& mesh, double tolerance,

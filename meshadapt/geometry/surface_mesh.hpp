@@ -4,6 +4,7 @@
 /// elements have a triangle on the boundary and no fourth corner.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,16 @@
 
 namespace ductile::meshadapt {
 
-/// As make_mesh(). Triangles of no area, and those that are there already, are left out;
-/// neighbours that disagree about which way they are turned are turned alike, as most are. Both are
-/// told in warnings. Vertices keep their numbers. Edges of one triangle, or of more than two, are
-/// curves; they have no neighbours. Thread safety: one caller; runs on the executor.
+/// The surface without triangles that have no area or are there already, and with neighbours that
+/// are turned alike, as most are; nothing if it is so. What was done is told in warnings. Vertices
+/// keep their numbers. Throws InputError as make_surface_mesh() does. Thread safety: one caller;
+/// runs on the executor.
+std::optional<AnyMesh> mended_surface(const runtime::Executor& executor, const AnyMesh& any,
+                                      const MakeMeshOptions& options,
+                                      std::vector<std::string>& warnings);
+
+/// As make_mesh(), from the mended surface. Edges of one triangle, or of more than two, are curves;
+/// they have no neighbours. Thread safety: as above.
 Mesh<2, 3> make_surface_mesh(const runtime::Executor& executor, const AnyMesh& any,
                              const MakeMeshOptions& options, Neighbours<2>& neighbours,
                              std::vector<std::string>& warnings);
