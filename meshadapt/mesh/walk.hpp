@@ -66,10 +66,14 @@ struct WalkEnd {
   bool inside;  ///< false: the walk met the boundary or took too long
 };
 
-/// Steps across the facet that the point is farthest beyond, until it is beyond none.
+/// Steps across the facet that the point is farthest beyond, until it is beyond none. Over a
+/// surface that is also over where the point is beyond both of two triangles, outside of their
+/// edge; there it ends, at one of them.
 template <int Dim, int Space = Dim>
 WalkEnd<Dim> walk(const Walkable<Dim, Space>& mesh, const Vector<Space>& point, ElementId near) {
-  constexpr int longest_walk = 2000;  // longer walks circle, or go around a hole
+  constexpr int longest_walk =
+      Dim < Space ? 200 : 2000;  // longer walks circle, or go around a hole
+  [[maybe_unused]] ElementId before = none;
   WalkEnd<Dim> at{near, {}, false};
   for (int step = 0; step < longest_walk; ++step) {
     if constexpr (Dim == 3)  // hides latency: in large meshes the next step is known late
@@ -91,6 +95,10 @@ WalkEnd<Dim> walk(const Walkable<Dim, Space>& mesh, const Vector<Space>& point, 
         next = mesh.neighbour_of[at.element][i];
       }
     if (next == none) break;
+    if constexpr (Dim < Space) {
+      if (next == before) break;
+      before = at.element;
+    }
     at.element = next;
   }
   return at;

@@ -86,6 +86,25 @@ std::array<Vector<Space>, n> positions_of(const Mesh<Dim, Space>& mesh,
   return positions;
 }
 
+/// How thick a layer is at an element that spans it, in the metric of a site. That of a surface is
+/// measured from its sides: facets of CAD are needles from one rim to the other.
+template <int Dim>
+double thickness_at(const Mesh<Dim>& mesh, ElementId element, const Site<Dim>& judge) {
+  return least_height(positions_of(mesh, mesh.corners_of[element]), judge);
+}
+double thickness_at(const Mesh<2, 3>& mesh, ElementId element, const Site<3>& judge) {
+  const auto p = positions_of(mesh, mesh.corners_of[element]);
+  const double area =
+      std::sqrt(std::max(0.0, area_squared(judge.metric, p[1] - p[0], p[2] - p[0])));
+  double thickness = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i)
+    if (mesh.patches_of[element][i] != 0)
+      thickness =
+          std::min(thickness,
+                   area / std::sqrt(squared_length(judge.metric, p[(i + 2) % 3] - p[(i + 1) % 3])));
+  return std::isinf(thickness) ? least_height(p, judge) : thickness;
+}
+
 }  // namespace
 
 template <int Dim, int Space>
@@ -275,7 +294,7 @@ bool Refine<Dim, Space>::leads_through_layer(const LongEdge& edge, const Shell& 
     const Corners<Dim>& corners = mesh_.corners_of[e];
     if (inside == Dim)
       return std::all_of(corners.begin(), corners.end(), on_side) &&
-             least_height(positions_of(mesh_, corners), split.site) < rules_.short_edge;
+             thickness_at(mesh_, e, split.site) < rules_.short_edge;
     for (std::size_t i = 0; i <= Dim; ++i) {
       if (mesh_.patches_of[e][i] == 0 || corners[i] == edge.a || corners[i] == edge.b) continue;
       const auto facet = facet_of<Dim>(corners, static_cast<int>(i));
