@@ -58,7 +58,7 @@ double extent(const std::array<Range, 3>& range_of) {
   return widest;
 }
 
-/// A thicker mesh is a surface in space, which cannot be adapted.
+/// A thicker mesh is a surface in space.
 bool is_flat(const std::array<Range, 3>& range_of, std::size_t axis) {
   constexpr double share = 1e-6, single = 2 * std::numeric_limits<float>::epsilon();
   const double across = extent(range_of);
@@ -108,8 +108,7 @@ std::string instead_of_tetrahedra(const AnyMesh& mesh) {
     return text + " in a plane " + plane + "; give them as a mesh of dimension 2 (flatten)";
   return text + " in no plane x, y or z = constant (" + axis_names[axis] + " varies least, by " +
          number(range_of[axis].width()) +
-         "); a surface is adapted as the boundary of tetrahedra, a plane mesh when turned into z = "
-         "0";
+         "): a surface, for which this cannot be done; a plane mesh must be turned into z = 0";
 }
 
 }  // namespace ductile::meshadapt
