@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 
 #include <string>
+#include <vector>
 
 #include "adapt/outer_loop.hpp"
 #include "core/first_bad.hpp"
@@ -8,6 +9,7 @@
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "geometry/surface_mesh.hpp"
 #include "mesh/array_lengths.hpp"
 #include "metric/spectrum.hpp"
 
@@ -53,6 +55,17 @@ class GivenMetric : public MetricSource {
   const AnyField& metric_;
 };
 
+/// The result is compared with the mended surface.
+AdaptedMesh adapt_surface(const runtime::Executor& executor, const AnyMesh& mesh,
+                          MetricSource& source, const AdaptOptions& options) {
+  std::vector<std::string> warnings;
+  const auto mended = mended_surface(executor, mesh, options.make, warnings);
+  AdaptedMesh adapted = adapt_in<2, 3>(executor, mended ? *mended : mesh, source, options);
+  auto& all = adapted.report.warnings;
+  all.insert(all.begin(), warnings.begin(), warnings.end());
+  return adapted;
+}
+
 }  // namespace
 
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, MetricSource& source,
@@ -62,6 +75,7 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, Metric
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
     adapted = mesh.dimension == 2 ? adapt_in<2>(executor, mesh, source, options)
+              : is_surface(mesh)  ? adapt_surface(executor, mesh, source, options)
                                   : adapt_in<3>(executor, mesh, source, options);
   });
   adapted.mesh.names = mesh.names;

@@ -14,13 +14,13 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
-Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& options,
-                      Start<Dim> start, AdaptReport& report)
+template <int Dim, int Space>
+Adapter<Dim, Space>::Adapter(const runtime::Executor& executor, const AdaptOptions& options,
+                             Start<Dim, Space> start, AdaptReport& report)
     : executor_(executor), options_(options), work_(executor, options, std::move(start), report) {}
 
-template <int Dim>
-std::optional<Effort> Adapter<Dim>::run(Effort effort) {
+template <int Dim, int Space>
+std::optional<Effort> Adapter<Dim, Space>::run(Effort effort) {
   if (effort == Effort::nothing) report().converged = true;
   if (effort == Effort::mending && options_.insert && !mend(share_to_change()))
     return Effort::nothing;
@@ -29,12 +29,12 @@ std::optional<Effort> Adapter<Dim>::run(Effort effort) {
   return std::nullopt;
 }
 
-template <int Dim>
-std::optional<Effort> Adapter<Dim>::adapt_as_needed() {
+template <int Dim, int Space>
+std::optional<Effort> Adapter<Dim, Space>::adapt_as_needed() {
   const double wanted = share_to_change();
   // Rules that refuse changes next to poor elements may hide what there is to do.
   const bool many_are_poor =
-      work_.share(elements_below(RemainingWork<Dim>::poor)) >= Thresholds::many_poor;
+      work_.share(elements_below(RemainingWork<Dim, Space>::poor)) >= Thresholds::many_poor;
   if (options_.insert && wanted < Thresholds::little && !many_are_poor)
     return mend(wanted) ? std::nullopt : std::optional(Effort::nothing);
   const bool doubtful = !options_.insert || wanted < Thresholds::not_much;
@@ -47,8 +47,8 @@ std::optional<Effort> Adapter<Dim>::adapt_as_needed() {
 /// Finishes the mesh where there is something to do. Returns false if it should be left as it came:
 /// much has changed without making it clearly better, or much is still to be done, because splits
 /// next to thin elements that cannot go may make others like them without end.
-template <int Dim>
-bool Adapter<Dim>::mend(double wanted) {
+template <int Dim, int Space>
+bool Adapter<Dim, Space>::mend(double wanted) {
   report().converged = true;
   came_adapted_ = true;
   if (wanted < Thresholds::nothing) return true;
@@ -60,8 +60,8 @@ bool Adapter<Dim>::mend(double wanted) {
   return !in_vain && share_to_change() < Thresholds::little;
 }
 
-template <int Dim>
-void Adapter<Dim>::adapt_anew() {
+template <int Dim, int Space>
+void Adapter<Dim, Space>::adapt_anew() {
   const Schedule<Dim> schedule = schedule_for<Dim>(options_);
   approach(schedule.approach);
   if (options_.approach_only) return;
@@ -73,13 +73,13 @@ void Adapter<Dim>::adapt_anew() {
 }
 
 /// One round of the kernels of a phase that are allowed; returns how many of their changes count.
-template <int Dim>
-std::size_t Adapter<Dim>::pass(const Phase& phase) {
+template <int Dim, int Space>
+std::size_t Adapter<Dim, Space>::pass(const Phase& phase) {
   std::size_t changes = 0;
   for (const Step& step : phase.steps) {
     const bool may_renumber = step.renumber_above < never && !work_.is_in_order();
     if (may_renumber && work_.share(changes) > step.renumber_above) work_.renumber_mesh();
-    const KernelRow<Dim>& kernel = kernel_rows<Dim>[index_of(step.kernel)];
+    const KernelRow<Dim, Space>& kernel = kernel_rows<Dim, Space>[index_of(step.kernel)];
     if (!(options_.*kernel.allowed)) continue;
     do {
       const std::size_t made = kernel.run(work_, step);
@@ -92,8 +92,8 @@ std::size_t Adapter<Dim>::pass(const Phase& phase) {
 
 /// Moves and swaps keep lengths at the end; in a mesh that did not come adapted, not yet the first
 /// time.
-template <int Dim>
-void Adapter<Dim>::follow(const Phase& phase) {
+template <int Dim, int Space>
+void Adapter<Dim, Space>::follow(const Phase& phase) {
   work_.begin(phase, came_adapted_);
   for (int times = 0; times < phase.passes; ++times) {
     work_.go_for(phase.aim, phase.aim == Aim::finish && (came_adapted_ || times > 0));
@@ -102,8 +102,8 @@ void Adapter<Dim>::follow(const Phase& phase) {
 }
 
 /// Few changes may be the beginning of many, where a thin layer is split in halves.
-template <int Dim>
-void Adapter<Dim>::approach(const Phase& phase) {
+template <int Dim, int Space>
+void Adapter<Dim, Space>::approach(const Phase& phase) {
   int& rounds = report().iterations = 0;
   bool& converged = report().converged = false;
   work_.begin(phase, false);
@@ -118,14 +118,14 @@ void Adapter<Dim>::approach(const Phase& phase) {
   }
 }
 
-template <int Dim>
-Standing Adapter<Dim>::standing() const {
+template <int Dim, int Space>
+Standing Adapter<Dim, Space>::standing() const {
   const EdgeRange wanted{options_.rules.short_edge, options_.rules.long_edge};
-  return standing_of(executor_, mesh(), wanted, RemainingWork<Dim>::poor);
+  return standing_of(executor_, mesh(), wanted, RemainingWork<Dim, Space>::poor);
 }
 
-template <int Dim>
-std::size_t Adapter<Dim>::count_elements(auto&& counts) const {
+template <int Dim, int Space>
+std::size_t Adapter<Dim, Space>::count_elements(auto&& counts) const {
   return runtime::parallel_reduce(
       executor_, mesh().element_slots(), std::size_t{0},
       [&](std::size_t e) {
@@ -134,22 +134,22 @@ std::size_t Adapter<Dim>::count_elements(auto&& counts) const {
       std::plus<>());
 }
 
-template <int Dim>
-std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
+template <int Dim, int Space>
+std::size_t Adapter<Dim, Space>::elements_below(double mean_ratio) const {
   const double quality = quality_of_mean_ratio<Dim>(mean_ratio);
   return count_elements([&](std::size_t e) { return mesh().quality_of[e] < quality; });
 }
 
 /// Existing elements that were made, moved or swapped since that epoch.
-template <int Dim>
-std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
+template <int Dim, int Space>
+std::size_t Adapter<Dim, Space>::elements_changed_after(std::uint32_t epoch) const {
   return count_elements([&](std::size_t e) { return mesh().changed_at[e] > epoch; });
 }
 
 /// Are most elements slivers in the metric, or some, and many to be made where sizes jump, or where
 /// facets of curved boundaries, slivers too, can hardly change?
-template <int Dim>
-bool Adapter<Dim>::is_far() const {
+template <int Dim, int Space>
+bool Adapter<Dim, Space>::is_far() const {
   const double slivers = work_.share(elements_below(Tuning<Dim>::far));
   if (slivers > Thresholds::most_slivers) return true;
   return slivers > Thresholds::some_slivers &&
@@ -157,10 +157,10 @@ bool Adapter<Dim>::is_far() const {
 }
 
 /// Adapts to metrics on the way to one that is far, roughly, before what is done for any.
-template <int Dim>
-void Adapter<Dim>::come_near(const Phase& phase) {
-  MetricPath<Dim> path(executor_, mesh(), work_.background(),
-                       share_of_steep(executor_, mesh()) > Thresholds::much_of_demand);
+template <int Dim, int Space>
+void Adapter<Dim, Space>::come_near(const Phase& phase) {
+  MetricPath<Dim, Space> path(executor_, mesh(), work_.background(),
+                              share_of_steep(executor_, mesh()) > Thresholds::much_of_demand);
   work_.go_to_last_stage();  // none is far from the one before
   for (int step = 1; step <= path.steps(); ++step) {
     if (step > 1 && has_too_many()) step = path.steps();
@@ -174,8 +174,8 @@ void Adapter<Dim>::come_near(const Phase& phase) {
 
 /// Are there many more elements than the metric of the background asks for? Where directions turn
 /// within elements they grow on the way, from step to step.
-template <int Dim>
-bool Adapter<Dim>::has_too_many() const {
+template <int Dim, int Space>
+bool Adapter<Dim, Space>::has_too_many() const {
   const double wanted = work_.background().complexity(executor_);
   const auto elements = static_cast<double>(work_.element_count());
   return complexity_of_elements(Dim, elements) > Thresholds::too_many * wanted;
@@ -183,20 +183,21 @@ bool Adapter<Dim>::has_too_many() const {
 
 /// Share of the elements next to which something would be done, or what it is at least where that
 /// is not little. A mesh that comes adapted shall stay as it is.
-template <int Dim>
-double Adapter<Dim>::share_to_change() {
+template <int Dim, int Space>
+double Adapter<Dim, Space>::share_to_change() {
   if (!options_.insert) return 1;
   work_.go_for(Aim::finish, true);
   const auto count = static_cast<double>(least_count());
   const Rules rules = work_.rules();
   const Step& last_move = Steps<Dim>::raise[0];
-  RemainingWork<Dim> remaining(executor_, work_.mesh(), work_.background(),
-                               {.rules = rules,
-                                .smooth = work_.smoothing(last_move),
-                                .swap_below = Tuning<Dim>::swap_below,
-                                .swaps = options_.swap,
-                                .moves = options_.move,
-                                .few = static_cast<std::size_t>(Thresholds::little * count)});
+  RemainingWork<Dim, Space> remaining(
+      executor_, work_.mesh(), work_.background(),
+      {.rules = rules,
+       .smooth = work_.smoothing(last_move),
+       .swap_below = Tuning<Dim>::swap_below,
+       .swaps = options_.swap,
+       .moves = options_.move,
+       .few = static_cast<std::size_t>(Thresholds::little * count)});
   const double share =
       static_cast<double>(remaining.count(work_.survey_for(rules.long_edge))) / count;
   if (share < Thresholds::little) remaining.touch_poor();
@@ -204,13 +205,13 @@ double Adapter<Dim>::share_to_change() {
   return share;
 }
 
-template <int Dim>
-std::size_t Adapter<Dim>::least_count() const {
+template <int Dim, int Space>
+std::size_t Adapter<Dim, Space>::least_count() const {
   return std::max(Thresholds::least_count, work_.element_count());
 }
 
-template <int Dim>
-std::size_t Adapter<Dim>::splits_to_come() {
+template <int Dim, int Space>
+std::size_t Adapter<Dim, Space>::splits_to_come() {
   const double limit = options_.rules.long_edge;
   const auto edges = long_edges(executor_, mesh(), work_.survey_for(limit), limit, 0);
   return runtime::parallel_reduce(
@@ -219,6 +220,7 @@ std::size_t Adapter<Dim>::splits_to_come() {
 }
 
 template class Adapter<2>;
+template class Adapter<2, 3>;
 template class Adapter<3>;
 
 }  // namespace ductile::meshadapt

@@ -18,20 +18,20 @@ namespace ductile::meshadapt {
 /// adapted; only the finish, for what is left to do in one that did; nothing.
 enum class Effort : std::uint8_t { everything, as_needed, mending, nothing };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Adapter {
  public:
   /// Refers to the options and the report, which may be that of earlier runs.
-  Adapter(const runtime::Executor& executor, const AdaptOptions& options, Start<Dim> start,
+  Adapter(const runtime::Executor& executor, const AdaptOptions& options, Start<Dim, Space> start,
           AdaptReport& report);
 
   /// Adapts the mesh, once. If it came adapted and was better than it is now, returns the effort
   /// that should be tried on the mesh that came instead. The report's iterations are those of this.
   std::optional<Effort> run(Effort effort);
 
-  const Mesh<Dim>& mesh() const { return work_.mesh(); }
+  const Mesh<Dim, Space>& mesh() const { return work_.mesh(); }
   /// Gives the mesh away, which is the end of this adapter's work.
-  Mesh<Dim> take_mesh() { return work_.take_mesh(); }
+  Mesh<Dim, Space> take_mesh() { return work_.take_mesh(); }
 
  private:
   AdaptReport& report() { return work_.report(); }
@@ -61,7 +61,7 @@ class Adapter {
 
   const runtime::Executor& executor_;
   const AdaptOptions& options_;
-  Workpiece<Dim> work_;
+  Workpiece<Dim, Space> work_;
   bool came_adapted_ = false;  // or nearly
 };
 

@@ -29,9 +29,9 @@ Counts summed(const runtime::Executor& executor, std::size_t n, auto&& counts_of
 
 /// The sums of counts_of(v, w) over edges: each_end(v, append) appends the other ends of those at
 /// v, some of them several times.
-template <int Dim>
-Counts summed_over_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh, auto&& each_end,
-                         auto&& counts_of) {
+template <int Dim, int Space>
+Counts summed_over_edges(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                         auto&& each_end, auto&& counts_of) {
   runtime::PerThread<std::vector<VertexId>> buffers(executor);
   return summed(executor, mesh.vertex_slots(), [&](std::size_t at) {
     const auto v = static_cast<VertexId>(at);
@@ -52,10 +52,10 @@ Counts summed_over_edges(const runtime::Executor& executor, const Mesh<Dim>& mes
 }
 
 /// Which edges of a mesh required entities hold.
-template <int Dim>
+template <int Dim, int Space = Dim>
 class HeldEdges {
  public:
-  explicit HeldEdges(const Mesh<Dim>& mesh) : mesh_(mesh) {}
+  explicit HeldEdges(const Mesh<Dim, Space>& mesh) : mesh_(mesh) {}
 
   /// May there be any? Most meshes have no required entities.
   bool are_possible(const runtime::Executor& executor) const {
@@ -122,13 +122,22 @@ class HeldEdges {
     return on_patch;
   }
 
-  const Mesh<Dim>& mesh_;
+  const Mesh<Dim, Space>& mesh_;
 };
 
+/// Is a facet on a smooth patch? Of a surface: does an edge belong to a triangle on one?
+template <int Dim, int Space>
+bool is_curved(const Mesh<Dim, Space>& mesh, ElementId e, [[maybe_unused]] std::size_t facet) {
+  if constexpr (Dim < Space)
+    return mesh.regions[mesh.region_of[e]].smooth;
+  else
+    return mesh.patches[mesh.patches_of[e][facet]].smooth;
+}
+
 /// Counts the edges of the report. Thread safety: one caller; runs on the executor.
-template <int Dim>
-void count_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh, const Rules& rules,
-                 AdaptReport& report) {
+template <int Dim, int Space>
+void count_edges(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                 const Rules& rules, AdaptReport& report) {
   const auto each_end = [&](VertexId v, auto&& append) {
     for (const ElementId e : mesh.elements_of.of(v))
       for (const VertexId w : mesh.corners_of[e]) append(w);
@@ -136,7 +145,7 @@ void count_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh, const
   const auto each_end_on_curved = [&](VertexId v, auto&& append) {
     for (const ElementId e : mesh.elements_of.of(v))
       for (std::size_t i = 0; i <= Dim; ++i)
-        if (mesh.patches[mesh.patches_of[e][i]].smooth && mesh.corners_of[e][i] != v)
+        if (is_curved(mesh, e, i) && mesh.corners_of[e][i] != v)
           for (const VertexId w : facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i))) append(w);
   };
   if (mesh.surface) {
@@ -147,7 +156,7 @@ void count_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh, const
     report.curved_edges = all;
     report.curved_edges_short = shorter;
   }
-  const HeldEdges<Dim> held(mesh);
+  const HeldEdges<Dim, Space> held(mesh);
   if (!held.are_possible(executor)) return;
   const auto [longer, shorter] =
       summed_over_edges(executor, mesh, each_end, [&](VertexId v, VertexId w) {
@@ -161,8 +170,8 @@ void count_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh, const
 
 /// Are many edges of facets between vertices that may not move too short? Thread safety: one
 /// caller; runs on the executor.
-template <int Dim>
-bool has_short_facets(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+template <int Dim, int Space>
+bool has_short_facets(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
                       const Rules& rules) {
   constexpr std::size_t least = 32, part = 10;
   const auto is_fixed = [&](VertexId v) { return mesh.kind_of[v].class_dimension == 0; };
@@ -170,7 +179,7 @@ bool has_short_facets(const runtime::Executor& executor, const Mesh<Dim>& mesh,
     Counts counts{};
     if (!mesh.alive(static_cast<ElementId>(e))) return counts;
     for (std::size_t i = 0; i <= Dim; ++i) {
-      if (mesh.patches_of[e][i] == 0) continue;
+      if (Dim == Space && mesh.patches_of[e][i] == 0) continue;
       const Facet<Dim> facet = facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i));
       for (std::size_t a = 0; a < Dim; ++a)
         for (std::size_t b = 0; b < a; ++b) {

@@ -25,14 +25,14 @@
 namespace ductile::meshadapt {
 
 /// Changes the metric of a background. Thread safety: one caller; runs on the executor.
-template <int Dim>
+template <int Dim, int Space = Dim>
 class MetricPath {
  public:
   /// Starts at the metric of the elements of the mesh, which the background is a copy of. The
   /// number of steps follows from a mean over the vertices, weighted equally or by the number of
   /// elements that the target asks for around them.
-  MetricPath(const runtime::Executor& executor, const Mesh<Dim>& mesh, Background<Dim>& background,
-             bool by_demand)
+  MetricPath(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+             Background<Dim, Space>& background, bool by_demand)
       : executor_(executor),
         background_(background),
         from_(mesh.vertex_slots()),
@@ -64,8 +64,8 @@ class MetricPath {
     if (!(too_many > 1)) return;
     const double larger = 2 * std::log(too_many) / Dim;
     set([&](std::size_t v) {
-      Metric<Dim> metric = between(v, share);
-      for (std::size_t i = 0; i < Dim; ++i) metric.m[i * (i + 3) / 2] -= larger;  // its diagonal
+      Metric<Space> metric = between(v, share);
+      for (std::size_t i = 0; i < Space; ++i) metric.m[i * (i + 3) / 2] -= larger;  // its diagonal
       return metric;
     });
   }
@@ -73,8 +73,8 @@ class MetricPath {
  private:
   static constexpr double longest_step = 3;  ///< factor by which a ratio of sizes may change
 
-  Metric<Dim> between(std::size_t v, double share) const {
-    Metric<Dim> metric = share * to_[v];
+  Metric<Space> between(std::size_t v, double share) const {
+    Metric<Space> metric = share * to_[v];
     metric += (1 - share) * from_[v];
     return metric;
   }
@@ -100,22 +100,30 @@ class MetricPath {
     return sum.all / sum.weights;
   }
 
-  static double volume_around(const Mesh<Dim>& mesh, VertexId v) {
+  static double volume_around(const Mesh<Dim, Space>& mesh, VertexId v) {
     double sum = 0;
     for (const ElementId element : mesh.elements_of.of(v))
-      sum += certain_determinant<Dim>(positions(mesh, element)) / (Dim == 2 ? 2 : 6);
+      sum += volume_of(positions(mesh, element));
     return sum;
   }
 
-  static std::array<Vector<Dim>, Dim + 1> positions(const Mesh<Dim>& mesh, ElementId element) {
-    std::array<Vector<Dim>, Dim + 1> corner;
+  static double volume_of(const std::array<Vector<Space>, Dim + 1>& corner) {
+    if constexpr (Dim < Space)
+      return certain_area(corner[0], corner[1], corner[2]) / 2;
+    else
+      return certain_determinant<Dim>(corner) / (Dim == 2 ? 2 : 6);
+  }
+
+  static std::array<Vector<Space>, Dim + 1> positions(const Mesh<Dim, Space>& mesh,
+                                                      ElementId element) {
+    std::array<Vector<Space>, Dim + 1> corner;
     for (std::size_t c = 0; c <= Dim; ++c)
       corner[c] = mesh.site_of[mesh.corners_of[element][c]].position;
     return corner;
   }
 
-  static Metric<Dim> mean_log_around(const Mesh<Dim>& mesh, VertexId v) {
-    Metric<Dim> sum;
+  static Metric<Space> mean_log_around(const Mesh<Dim, Space>& mesh, VertexId v) {
+    Metric<Space> sum;
     const auto around = mesh.elements_of.of(v);
     for (const ElementId element : around)
       sum += logarithm(metric_of_element<Dim>(positions(mesh, element)));
@@ -124,17 +132,17 @@ class MetricPath {
 
   /// Logarithm of the factor by which the ratio of two sizes changes most.
   double log_stretch(std::size_t v) const {
-    Metric<Dim> change = to_[v];
+    Metric<Space> change = to_[v];
     change += -1.0 * from_[v];
-    const PrincipalAxes<Dim> axes = principal_axes(change);
+    const PrincipalAxes<Space> axes = principal_axes(change);
     const auto [least, most] = std::minmax_element(axes.value.begin(), axes.value.end());
     return (*most - *least) / 2;
   }
 
   const runtime::Executor& executor_;
-  Background<Dim>& background_;
-  std::vector<Metric<Dim>> from_, to_;  // [vertex of the background], logarithms
-  std::vector<double> share_of_;        // [vertex of the background], of the volume
+  Background<Dim, Space>& background_;
+  std::vector<Metric<Space>> from_, to_;  // [vertex of the background], logarithms
+  std::vector<double> share_of_;          // [vertex of the background], of the volume
   double most_complexity_ = 0;
   int steps_ = 1;
 };

@@ -20,6 +20,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/make_mesh.hpp"
 #include "geometry/rounding.hpp"
+#include "geometry/surface_mesh.hpp"
 #include "mesh/wording.hpp"
 #include "operators/round_boundary.hpp"
 
@@ -29,8 +30,8 @@ using runtime::Executor;
 
 namespace {
 
-template <int Dim>
-std::size_t fixed_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+std::size_t fixed_vertices(const Executor& executor, const Mesh<Dim, Space>& mesh) {
   const auto is_fixed = [&](std::size_t v) {
     return std::size_t{mesh.kind_of[v].class_dimension == 0 &&
                        mesh.vertex_alive(static_cast<VertexId>(v))};
@@ -39,14 +40,14 @@ std::size_t fixed_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
                                   std::plus<>());
 }
 
-template <int Dim>
-bool has_crack_sides(const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+bool has_crack_sides(const Mesh<Dim, Space>& mesh) {
   return std::any_of(mesh.patches.begin(), mesh.patches.end(),
-                     [](const Patch<Dim>& patch) { return patch.crack_side; });
+                     [](const auto& patch) { return patch.crack_side; });
 }
 
-template <int Dim>
-Neighbours<Dim> neighbours_of(const Executor& executor, const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+Neighbours<Dim> neighbours_of(const Executor& executor, const Mesh<Dim, Space>& mesh) {
   Neighbours<Dim> neighbours;
   runtime::FreshMemory fresh;
   neighbours.resize_for_overwrite(mesh.element_slots(), fresh);
@@ -71,7 +72,7 @@ std::string warning_of_noise(const std::string& mesh, double noise) {
 /// The input, set up to be adapted to one metric after another. An attempt whose result is not
 /// accepted is taken back: the input is set up again, for less effort or to keep more of its
 /// boundary.
-template <int Dim>
+template <int Dim, int Space>
 class Attempt {
  public:
   /// Refers to the executor and the input.
@@ -84,7 +85,7 @@ class Attempt {
   /// The mesh as it stands and the metrics for the next pass, within the limits of the options.
   /// They come from the source, unless the last ones grow too fast on this mesh. Nothing if the
   /// mesh is final.
-  std::optional<Start<Dim>> next(MetricSource& source) {
+  std::optional<Start<Dim, Space>> next(MetricSource& source) {
     if (pass_ > 0)
       if (auto start = with_growth_limited()) return start;
     growths_ = 0;
@@ -100,14 +101,14 @@ class Attempt {
   }
 
   /// Adapts; ends with keep() or take_back(). Refers to this.
-  Adapter<Dim> adapter(Start<Dim> start) {
+  Adapter<Dim, Space> adapter(Start<Dim, Space> start) {
     const runtime::PhaseTimer timer(report_.setup_seconds);
     copy_.reset();
-    return Adapter<Dim>(executor_, options_, std::move(start), report_);
+    return Adapter<Dim, Space>(executor_, options_, std::move(start), report_);
   }
   Effort effort() const { return pass_ == 0 ? effort_ : Effort::everything; }
 
-  void keep(Adapter<Dim>& adapter) {
+  void keep(Adapter<Dim, Space>& adapter) {
     mesh_ = adapter.take_mesh();
     ++pass_;
   }
@@ -150,11 +151,11 @@ class Attempt {
     return *copy_;
   }
 
-  Start<Dim> with_limits(const AnyField& metric) {
+  Start<Dim, Space> with_limits(const AnyField& metric) {
     const runtime::PhaseTimer timer(report_.setup_seconds);
     name_ = metric.name;
-    auto metric_of = valid_metrics<Dim>(executor_, pass_ == 0 ? input_ : copy().mesh, metric,
-                                        {options_.smallest_size, options_.largest_size});
+    auto metric_of = valid_metrics<Space>(executor_, pass_ == 0 ? input_ : copy().mesh, metric,
+                                          {options_.smallest_size, options_.largest_size});
     Neighbours<Dim> neighbours = pass_ == 0 ? set_up() : neighbours_of(executor_, mesh_);
     for (const std::string& left : limit_sizes(executor_, mesh_, options_, metric_of))
       warn(name_ + ": " + left);
@@ -166,8 +167,11 @@ class Attempt {
   Neighbours<Dim> set_up() {
     Neighbours<Dim> neighbours;
     mesh_ = {};  // before there is another
-    mesh_ = make_mesh<Dim>(executor_, input_, options_.make, neighbours, report_.warnings);
-    may_meet_ = mesh_.surface || has_crack_sides(mesh_);
+    if constexpr (Dim < Space)
+      mesh_ = make_surface_mesh(executor_, input_, options_.make, neighbours, report_.warnings);
+    else
+      mesh_ = make_mesh<Dim>(executor_, input_, options_.make, neighbours, report_.warnings);
+    may_meet_ = Dim < Space || mesh_.surface || has_crack_sides(mesh_);
     noise_ = mesh_.rounding ? mesh_.rounding->noise : 0;
     report_.fixed_vertices = fixed_vertices(executor_, mesh_);
     return neighbours;
@@ -175,13 +179,13 @@ class Attempt {
 
   /// Growth is limited along edges, of which a coarse mesh has few. Limits the metrics of the
   /// adapted mesh along its edges; nothing if that asks for hardly more elements.
-  std::optional<Start<Dim>> with_growth_limited() {
+  std::optional<Start<Dim, Space>> with_growth_limited() {
     constexpr double much = 1.1;
     constexpr int most_times = 5;
     if (!limits_growth(options_) || !options_.insert || growths_ == most_times) return std::nullopt;
     ++growths_;
     renumber(executor_, mesh_);
-    auto metric_of = runtime::make_vector<Metric<Dim>>(executor_, mesh_.vertex_slots());
+    auto metric_of = runtime::make_vector<Metric<Space>>(executor_, mesh_.vertex_slots());
     runtime::parallel_for(executor_, metric_of.size(),
                           [&](std::size_t v) { metric_of[v] = mesh_.site_of[v].metric; });
     const double before = complexity_of_demand(executor_, mesh_, metric_of);
@@ -193,7 +197,7 @@ class Attempt {
     if (complexity_of_demand(executor_, mesh_, metric_of) < much * before) return std::nullopt;
     expect_possible(executor_, mesh_, options_, metric_of, name_);
     Neighbours<Dim> neighbours = neighbours_of(executor_, mesh_);
-    return Start<Dim>{std::move(mesh_), std::move(neighbours), std::move(metric_of)};
+    return Start<Dim, Space>{std::move(mesh_), std::move(neighbours), std::move(metric_of)};
   }
 
   const Executor& executor_;
@@ -203,7 +207,7 @@ class Attempt {
   Effort effort_ = Effort::as_needed;  ///< for the input
   int pass_ = 0;
   int growths_ = 0;                     ///< times in a row that growth was limited
-  Mesh<Dim> mesh_;                      ///< as it stands between passes
+  Mesh<Dim, Space> mesh_;               ///< as it stands between passes
   std::string name_;                    ///< of the metric
   std::optional<MeshWithMetric> copy_;  ///< of the mesh
   AdaptReport report_;
@@ -213,18 +217,18 @@ class Attempt {
 
 }  // namespace
 
-template <int Dim>
+template <int Dim, int Space>
 AdaptedMesh adapt_in(const Executor& executor, const AnyMesh& input, MetricSource& source,
                      const AdaptOptions& options) {
   double seconds = 0;
   AdaptedMesh adapted;
   {
     const runtime::PhaseTimer timer(seconds);
-    Rescue<Dim> rescue(executor, input, options.make);
-    Attempt<Dim> attempt(executor, input, options);
+    Rescue<Space> rescue(executor, input, options.make);
+    Attempt<Dim, Space> attempt(executor, input, options);
     while (true) {
       if (auto start = attempt.next(source)) {
-        Adapter<Dim> adapter = attempt.adapter(std::move(*start));
+        Adapter<Dim, Space> adapter = attempt.adapter(std::move(*start));
         if (const auto less = adapter.run(attempt.effort()))
           attempt.take_back(*less);
         else
@@ -243,6 +247,8 @@ AdaptedMesh adapt_in(const Executor& executor, const AnyMesh& input, MetricSourc
 
 template AdaptedMesh adapt_in<2>(const Executor&, const AnyMesh&, MetricSource&,
                                  const AdaptOptions&);
+template AdaptedMesh adapt_in<2, 3>(const Executor&, const AnyMesh&, MetricSource&,
+                                    const AdaptOptions&);
 template AdaptedMesh adapt_in<3>(const Executor&, const AnyMesh&, MetricSource&,
                                  const AdaptOptions&);
 

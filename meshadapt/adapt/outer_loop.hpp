@@ -9,12 +9,14 @@
 namespace ductile::meshadapt {
 
 /// adapt() with options and an input of valid coordinates, and a source that gives valid metrics.
-template <int Dim>
+template <int Dim, int Space = Dim>
 AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& input, MetricSource& source,
                      const AdaptOptions& options);
 
 extern template AdaptedMesh adapt_in<2>(const runtime::Executor&, const AnyMesh&, MetricSource&,
                                         const AdaptOptions&);
+extern template AdaptedMesh adapt_in<2, 3>(const runtime::Executor&, const AnyMesh&, MetricSource&,
+                                           const AdaptOptions&);
 extern template AdaptedMesh adapt_in<3>(const runtime::Executor&, const AnyMesh&, MetricSource&,
                                         const AdaptOptions&);
 

@@ -20,8 +20,9 @@ runtime::RoundsReport run_by_colours(const runtime::Executor& executor, Op& op,
                                      const runtime::UnsetVector<VertexId>& work);
 
 /// Swaps, class by class; see swap_by_vertex.hpp.
-template <int Dim>
-runtime::RoundsReport swap_by_colours(Workpiece<Dim>& work, runtime::UnsetVector<Swappable> found);
+template <int Dim, int Space>
+runtime::RoundsReport swap_by_colours(Workpiece<Dim, Space>& work,
+                                      runtime::UnsetVector<Swappable> found);
 
 template <class Op>
 runtime::RoundsReport run_by_conflicts(const runtime::Executor& executor, Op& op,

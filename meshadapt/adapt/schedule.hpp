@@ -127,34 +127,34 @@ Schedule<Dim> schedule_for(const AdaptOptions& options) {
       .finish = {Aim::finish, S::finish, 10, 1e-4, {Look::all, Look::all, Look::all, Look::news}}};
 }
 
-template <int Dim>
+template <int Dim, int Space>
 class Workpiece;
 
 /// The kernels as steps, each in a file of its own: as many sweeps as the step asks for, until one
 /// changes little. They return how many changes they made.
-template <int Dim>
-std::size_t run_coarsen(Workpiece<Dim>& work, const Step& step);
-template <int Dim>
-std::size_t run_refine(Workpiece<Dim>& work, const Step& step);
-template <int Dim>
-std::size_t run_swap(Workpiece<Dim>& work, const Step& step);
-template <int Dim>
-std::size_t run_smooth(Workpiece<Dim>& work, const Step& step);
+template <int Dim, int Space>
+std::size_t run_coarsen(Workpiece<Dim, Space>& work, const Step& step);
+template <int Dim, int Space>
+std::size_t run_refine(Workpiece<Dim, Space>& work, const Step& step);
+template <int Dim, int Space>
+std::size_t run_swap(Workpiece<Dim, Space>& work, const Step& step);
+template <int Dim, int Space>
+std::size_t run_smooth(Workpiece<Dim, Space>& work, const Step& step);
 
 /// A kernel for the driver; its name and its report are in `kernels`.
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct KernelRow {
-  std::size_t (*run)(Workpiece<Dim>&, const Step&);
+  std::size_t (*run)(Workpiece<Dim, Space>&, const Step&);
   bool AdaptOptions::*allowed;  ///< the option by which it may run
   bool renews;                  ///< makes or removes vertices or elements
   bool counts;                  ///< a pass is calm when such changes are few
 };
 
-template <int Dim>
-inline constexpr std::array<KernelRow<Dim>, kernels.size()> kernel_rows{
-    {{run_coarsen<Dim>, &AdaptOptions::insert, true, true},
-     {run_refine<Dim>, &AdaptOptions::insert, true, true},
-     {run_swap<Dim>, &AdaptOptions::swap, Dim == 3, true},
-     {run_smooth<Dim>, &AdaptOptions::move, false, false}}};
+template <int Dim, int Space>
+inline constexpr std::array<KernelRow<Dim, Space>, kernels.size()> kernel_rows{
+    {{run_coarsen<Dim, Space>, &AdaptOptions::insert, true, true},
+     {run_refine<Dim, Space>, &AdaptOptions::insert, true, true},
+     {run_swap<Dim, Space>, &AdaptOptions::swap, Dim == 3, true},
+     {run_smooth<Dim, Space>, &AdaptOptions::move, false, false}}};
 
 }  // namespace ductile::meshadapt

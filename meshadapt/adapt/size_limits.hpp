@@ -16,6 +16,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/process.hpp"
 #include "geometry/curvature.hpp"
+#include "geometry/surface_mesh.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/wording.hpp"
@@ -28,18 +29,18 @@ namespace ductile::meshadapt {
 
 /// The tensors [vertex] of a metric for this mesh. Those out of range are bounded, which may make a
 /// metric of them. Throws InputError for a field that is not a metric of the mesh.
-template <int Dim>
-std::vector<Metric<Dim>> valid_metrics(const runtime::Executor& executor, const AnyMesh& mesh,
-                                       const AnyField& field, const SizeBounds& bounds) {
-  if (field.types != std::vector{AnyField::Type::symmetric} || field.dimension != Dim ||
+template <int Space>
+std::vector<Metric<Space>> valid_metrics(const runtime::Executor& executor, const AnyMesh& mesh,
+                                         const AnyField& field, const SizeBounds& bounds) {
+  if (field.types != std::vector{AnyField::Type::symmetric} || field.dimension != Space ||
       field.vertex_count != mesh.vertex_count())
     throw InputError(name_of(field) + ": expected one symmetric tensor for each of the " +
                      std::to_string(mesh.vertex_count()) + " vertices of " + name_of(mesh));
   expect_values(field);
-  expect_metric_field<Dim>(executor, field, bounds);
-  auto metric_of = runtime::make_vector<Metric<Dim>>(executor, field.vertex_count);
+  expect_metric_field<Space>(executor, field, bounds);
+  auto metric_of = runtime::make_vector<Metric<Space>>(executor, field.vertex_count);
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    Metric<Dim>& metric = metric_of[v];
+    Metric<Space>& metric = metric_of[v];
     std::copy_n(&field.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
     if (has_bounds(bounds) && !in_range(metric)) metric = within_bounds(metric, bounds);
   });
@@ -60,10 +61,10 @@ inline bool limits_growth(const AdaptOptions& options) {
 
 /// Makes the metrics keep the growth that the options allow, within the bounds. Returns sentences
 /// about what it could not do.
-template <int Dim>
-std::vector<std::string> limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                      const AdaptOptions& options,
-                                      std::vector<Metric<Dim>>& metric_of) {
+template <int Dim, int Space>
+std::vector<std::string> limit_growth(const runtime::Executor& executor,
+                                      const Mesh<Dim, Space>& mesh, const AdaptOptions& options,
+                                      std::vector<Metric<Space>>& metric_of) {
   std::vector<std::string> warnings;
   if (const double factor = growth_of(options); factor > 0) {
     const auto report = limit_gradation(executor, metric_of, mesh, {.factor = factor});
@@ -81,10 +82,10 @@ std::vector<std::string> limit_growth(const runtime::Executor& executor, const M
 
 /// Makes the metrics keep the bounds, the curvature of boundaries and the growth that the options
 /// allow. Returns sentences about what it could not do.
-template <int Dim>
-std::vector<std::string> limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                     const AdaptOptions& options,
-                                     std::vector<Metric<Dim>>& metric_of) {
+template <int Dim, int Space>
+std::vector<std::string> limit_sizes(const runtime::Executor& executor,
+                                     const Mesh<Dim, Space>& mesh, const AdaptOptions& options,
+                                     std::vector<Metric<Space>>& metric_of) {
   bound_sizes(executor, metric_of, {options.smallest_size, options.largest_size});
   if (limits_growth(options) && mesh.surface)
     bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
@@ -92,9 +93,9 @@ std::vector<std::string> limit_sizes(const runtime::Executor& executor, const Me
 }
 
 /// Throws unless the elements that the metric asks for can be numbered and fit in memory.
-template <int Dim>
-void expect_possible(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                     const AdaptOptions& options, const std::vector<Metric<Dim>>& metric_of,
+template <int Dim, int Space>
+void expect_possible(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                     const AdaptOptions& options, const std::vector<Metric<Space>>& metric_of,
                      const std::string& name) {
   if (!options.insert) return;
   constexpr int enough_to_refine = 6;

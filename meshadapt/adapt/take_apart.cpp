@@ -11,6 +11,7 @@
 #include "ductile/runtime/growing_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "mesh/neighbours.hpp"
 #include "mesh/numbering.hpp"
 #include "metric/metric_range.hpp"
 
@@ -59,10 +60,10 @@ void add_curves(const Executor& executor, const Mesh<3>& mesh, const Ids& vertic
 }
 
 /// A mesh whose corners have new numbers, while lists are still those of the old vertices.
-template <int Dim>
+template <int Dim, int Space>
 class RenumberedFacets {
  public:
-  RenumberedFacets(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices,
+  RenumberedFacets(const Executor& executor, const Mesh<Dim, Space>& mesh, const Ids& vertices,
                    const Ids& elements)
       : executor_(executor), mesh_(mesh), vertices_(vertices), elements_(elements) {}
 
@@ -89,8 +90,10 @@ class RenumberedFacets {
 
   bool is_of_one_before(ElementId element, const Facet<Dim>& corners) const {
     const auto around = mesh_.elements_of.of(vertices_[corners[0]]);
-    const ElementId other = sharer_of<Dim>(mesh_, around, element, corners);
-    return other != none && rank_of(other) < rank_of(element);
+    return std::any_of(around.begin(), around.end(), [&](ElementId other) {
+      return other != element && has_facet<Dim>(mesh_.corners_of[other], corners) &&
+             rank_of(other) < rank_of(element);
+    });
   }
 
   /// The order of elements, see renumber_corners().
@@ -99,7 +102,7 @@ class RenumberedFacets {
     return {*std::min_element(corners.begin(), corners.end()), element};
   }
 
-  static void add(AnyMesh& any, const Facet<Dim>& corners, const Patch<Dim>& patch) {
+  static void add(AnyMesh& any, const Facet<Dim>& corners, const FacetPatch<Dim, Space>& patch) {
     if constexpr (Dim == 2) {
       const auto number = static_cast<std::uint32_t>(any.edges.size());
       if (patch.ridge) any.ridges.push_back(number);
@@ -113,13 +116,13 @@ class RenumberedFacets {
   }
 
   const Executor& executor_;
-  const Mesh<Dim>& mesh_;
+  const Mesh<Dim, Space>& mesh_;
   const Ids& vertices_;
   const Ids& elements_;
 };
 
-template <int Dim>
-void add_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& elements,
+template <int Dim, int Space>
+void add_elements(const Executor& executor, const Mesh<Dim, Space>& mesh, const Ids& elements,
                   AnyMesh& any) {
   Cells<Dim + 1>& cells = elements_in<Dim>(any);
   runtime::resize_empty(executor, EmptyVector{cells.vertices, elements.size()},
@@ -134,25 +137,25 @@ void add_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& el
 }
 
 /// Vertices with their metric.
-template <int Dim>
-void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices,
+template <int Dim, int Space>
+void add_vertices(const Executor& executor, const Mesh<Dim, Space>& mesh, const Ids& vertices,
                   MeshWithMetric& result) {
-  constexpr std::size_t stride = Metric<Dim>::size;
+  constexpr std::size_t stride = Metric<Space>::size;
   const std::size_t count = vertices.size();
   AnyMesh& any = result.mesh;
   AnyField& field = result.metric;
-  field.dimension = Dim;
+  field.dimension = Space;
   field.vertex_count = count;
   field.types = {AnyField::Type::symmetric};
   runtime::resize_empty(executor, EmptyVector{any.vertex_reference, count},
-                        EmptyVector{any.coordinates, count * Dim},
+                        EmptyVector{any.coordinates, count * Space},
                         EmptyVector{field.values, count * stride});
   parallel_for(executor, count, [&](std::size_t i) {
-    const Site<Dim>& site = mesh.site_of[vertices[i]];
+    const Site<Space>& site = mesh.site_of[vertices[i]];
     any.vertex_reference[i] = mesh.reference_of[vertices[i]];
-    std::copy_n(site.position.x.begin(), Dim, &any.coordinates[i * Dim]);
+    std::copy_n(site.position.x.begin(), Space, &any.coordinates[i * Space]);
     // Rounding may have left the range by a little, so that it could not be read again.
-    const Metric<Dim> metric = brought_into_range(site.metric);
+    const Metric<Space> metric = brought_into_range(site.metric);
     std::copy_n(metric.m.begin(), stride, &field.values[i * stride]);
   });
   any.corners = numbers_of(executor, vertices.size(),
@@ -162,8 +165,8 @@ void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& ve
 }
 
 /// Gives arrays back as soon as they have been read if the mesh is not needed any more.
-template <int Dim>
-MeshWithMetric read_out(const Executor& executor, Mesh<Dim>& mesh, bool is_spent) {
+template <int Dim, int Space>
+MeshWithMetric read_out(const Executor& executor, Mesh<Dim, Space>& mesh, bool is_spent) {
   const auto release = [&](auto&... arrays) {
     if (!is_spent) return;
     runtime::SpentMemory spent;
@@ -172,7 +175,7 @@ MeshWithMetric read_out(const Executor& executor, Mesh<Dim>& mesh, bool is_spent
   };
   release(mesh.quality_of, mesh.changed_at, mesh.host_of, mesh.entity_of);
   MeshWithMetric result;
-  result.mesh.dimension = Dim;
+  result.mesh.dimension = Space;
   const Ids vertices = order_of_vertices(executor, mesh, none);
   const Ids elements = [&] {
     const Ids place_of = places_in(executor, vertices, mesh.vertex_slots());
@@ -194,20 +197,22 @@ MeshWithMetric read_out(const Executor& executor, Mesh<Dim>& mesh, bool is_spent
 
 }  // namespace
 
-template <int Dim>
-MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
+template <int Dim, int Space>
+MeshWithMetric take_apart(const Executor& executor, Mesh<Dim, Space> mesh) {
   return read_out(executor, mesh, true);
 }
 
-template <int Dim>
-MeshWithMetric copy_in_order(const Executor& executor, Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+MeshWithMetric copy_in_order(const Executor& executor, Mesh<Dim, Space>& mesh) {
   renumber(executor, mesh);
   return read_out(executor, mesh, false);  // numbers nothing anew
 }
 
 template MeshWithMetric take_apart(const Executor&, Mesh<2>);
+template MeshWithMetric take_apart(const Executor&, Mesh<2, 3>);
 template MeshWithMetric take_apart(const Executor&, Mesh<3>);
 template MeshWithMetric copy_in_order(const Executor&, Mesh<2>&);
+template MeshWithMetric copy_in_order(const Executor&, Mesh<2, 3>&);
 template MeshWithMetric copy_in_order(const Executor&, Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -14,11 +14,11 @@ namespace ductile::meshadapt {
 /// entities with their references. Deleted entities are left out, and the others numbered as
 /// renumber() would number them. Arrays are given back as soon as they have been read, which takes
 /// less memory. Thread safety: one caller; runs on the executor.
-template <int Dim>
-MeshWithMetric take_apart(const runtime::Executor& executor, Mesh<Dim> mesh);
+template <int Dim, int Space>
+MeshWithMetric take_apart(const runtime::Executor& executor, Mesh<Dim, Space> mesh);
 
 /// Renumbers the mesh; returns the same for a mesh that is still needed, with the same numbers.
-template <int Dim>
-MeshWithMetric copy_in_order(const runtime::Executor& executor, Mesh<Dim>& mesh);
+template <int Dim, int Space>
+MeshWithMetric copy_in_order(const runtime::Executor& executor, Mesh<Dim, Space>& mesh);
 
 }  // namespace ductile::meshadapt

@@ -17,9 +17,9 @@ namespace {
 
 /// The mesh in an order in which neighbours in space are close in memory, every vertex with its
 /// metric and with one of its elements as its host.
-template <int Dim>
-Mesh<Dim> with_metrics(const runtime::Executor& executor, Start<Dim>& start) {
-  Mesh<Dim> mesh = std::move(start.mesh);
+template <int Dim, int Space>
+Mesh<Dim, Space> with_metrics(const runtime::Executor& executor, Start<Dim, Space>& start) {
+  Mesh<Dim, Space> mesh = std::move(start.mesh);
   parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     mesh.site_of[v] = make_site(mesh.site_of[v].position, start.metric_of[v]);
   });
@@ -32,9 +32,9 @@ Mesh<Dim> with_metrics(const runtime::Executor& executor, Start<Dim>& start) {
 
 }  // namespace
 
-template <int Dim>
-Workpiece<Dim>::Workpiece(const runtime::Executor& executor, const AdaptOptions& options,
-                          Start<Dim> start, AdaptReport& report)
+template <int Dim, int Space>
+Workpiece<Dim, Space>::Workpiece(const runtime::Executor& executor, const AdaptOptions& options,
+                                 Start<Dim, Space> start, AdaptReport& report)
     : executor_(executor),
       options_(options),
       mesh_(with_metrics(executor, start)),
@@ -43,15 +43,15 @@ Workpiece<Dim>::Workpiece(const runtime::Executor& executor, const AdaptOptions&
   update_qualities(executor_, mesh_);
 }
 
-template <int Dim>
-Mesh<Dim> Workpiece<Dim>::take_mesh() {
+template <int Dim, int Space>
+Mesh<Dim, Space> Workpiece<Dim, Space>::take_mesh() {
   background_.release(executor_);
-  survey_ = EdgeSurvey<Dim>();
+  survey_ = EdgeSurvey<Dim, Space>();
   return std::move(mesh_);
 }
 
-template <int Dim>
-void Workpiece<Dim>::begin(const Phase& phase, bool came_adapted) {
+template <int Dim, int Space>
+void Workpiece<Dim, Space>::begin(const Phase& phase, bool came_adapted) {
   go_for(phase.aim, false);
   if (phase.aim != Aim::approach) go_to_last_stage();  // what is left is split at once
   const std::uint32_t now = mesh_.epoch - 1;
@@ -60,21 +60,21 @@ void Workpiece<Dim>::begin(const Phase& phase, bool came_adapted) {
     if (phase.look[k] != Look::news) seen_by_[k] = phase.look[k] == Look::all ? 0 : now;
 }
 
-template <int Dim>
-void Workpiece<Dim>::go_for(Aim aim, bool keeps_lengths) {
+template <int Dim, int Space>
+void Workpiece<Dim, Space>::go_for(Aim aim, bool keeps_lengths) {
   aim_ = aim;
   keeps_lengths_ = keeps_lengths;
 }
 
-template <int Dim>
-bool Workpiece<Dim>::next_stage() {
+template <int Dim, int Space>
+bool Workpiece<Dim, Space>::next_stage() {
   if (!options_.insert || stage_ == last_stage) return false;
   ++stage_;
   return true;
 }
 
-template <int Dim>
-Rules Workpiece<Dim>::rules() const {
+template <int Dim, int Space>
+Rules Workpiece<Dim, Space>::rules() const {
   Rules rules = options_.rules;
   if (aim_ == Aim::approach) rules.kept_quality *= Tuning<Dim>::kept_quality;
   if (aim_ == Aim::rearrange) {
@@ -90,14 +90,14 @@ Rules Workpiece<Dim>::rules() const {
 
 /// The range that moves and swaps leave edges in: at the end they may not undo what collapses and
 /// splits have reached.
-template <int Dim>
-EdgeRange Workpiece<Dim>::range() const {
+template <int Dim, int Space>
+EdgeRange Workpiece<Dim, Space>::range() const {
   if (!keeps_lengths_) return {};
   return {options_.rules.short_edge, options_.rules.long_edge};
 }
 
-template <int Dim>
-SmoothOptions Workpiece<Dim>::smoothing(const Step& step) const {
+template <int Dim, int Space>
+SmoothOptions Workpiece<Dim, Space>::smoothing(const Step& step) const {
   const bool to_surface = step.move == Move::to_surface;
   return {.laplacian = step.move == Move::laplacian,
           .optimise_below = to_surface ? 0 : step.below,
@@ -109,28 +109,28 @@ SmoothOptions Workpiece<Dim>::smoothing(const Step& step) const {
 }
 
 /// From which length on edges are split now.
-template <int Dim>
-double Workpiece<Dim>::long_edge() const {
+template <int Dim, int Space>
+double Workpiece<Dim, Space>::long_edge() const {
   return options_.rules.long_edge * Tuning<Dim>::stages[stage_];
 }
 
 /// The survey of edges, for those longer than this and all that any kernel takes for short.
-template <int Dim>
-EdgeSurvey<Dim>& Workpiece<Dim>::survey_for(double longer) {
+template <int Dim, int Space>
+EdgeSurvey<Dim, Space>& Workpiece<Dim, Space>::survey_for(double longer) {
   survey_.compare_with({.shorter = Thresholds::eager * options_.rules.short_edge,
                         .longer = std::isinf(longer) ? options_.rules.long_edge : longer});
   return survey_;
 }
 
 /// Ends the mesh's epoch for a scan that starts now; returns when the same kernel's last one ended.
-template <int Dim>
-std::uint32_t Workpiece<Dim>::end_epoch(Kernel kernel) {
+template <int Dim, int Space>
+std::uint32_t Workpiece<Dim, Space>::end_epoch(Kernel kernel) {
   return std::exchange(seen_by_[index_of(kernel)], mesh_.epoch++);
 }
 
-template <int Dim>
-void Workpiece<Dim>::add(Kernel kernel, const runtime::RoundsReport& rounds) {
-  if (rounds.applied != 0 && kernel_rows<Dim>[index_of(kernel)].renews) {
+template <int Dim, int Space>
+void Workpiece<Dim, Space>::add(Kernel kernel, const runtime::RoundsReport& rounds) {
+  if (rounds.applied != 0 && kernel_rows<Dim, Space>[index_of(kernel)].renews) {
     element_count_.reset();
     in_order_ = false;
   }
@@ -145,15 +145,15 @@ void Workpiece<Dim>::add(Kernel kernel, const runtime::RoundsReport& rounds) {
   sum.wake_seconds += rounds.wake_seconds;
 }
 
-template <int Dim>
-void Workpiece<Dim>::tell(Kernel kernel, std::size_t changes) const {
+template <int Dim, int Space>
+void Workpiece<Dim, Space>::tell(Kernel kernel, std::size_t changes) const {
   const AdaptProgress progress{kernels[index_of(kernel)].name, report_.iterations, changes};
   if (options_.progress && !options_.progress(progress)) throw Cancelled();
 }
 
 /// Counted only after a kernel has made or removed some.
-template <int Dim>
-std::size_t Workpiece<Dim>::element_count() const {
+template <int Dim, int Space>
+std::size_t Workpiece<Dim, Space>::element_count() const {
   if (!element_count_)
     element_count_ = runtime::parallel_reduce(
         executor_, mesh_.element_slots(), std::size_t{0},
@@ -162,22 +162,22 @@ std::size_t Workpiece<Dim>::element_count() const {
   return *element_count_;
 }
 
-template <int Dim>
-double Workpiece<Dim>::share(std::size_t changes) const {
+template <int Dim, int Space>
+double Workpiece<Dim, Space>::share(std::size_t changes) const {
   return static_cast<double>(changes) /
          static_cast<double>(std::max<std::size_t>(1, element_count()));
 }
 
-template <int Dim>
-void Workpiece<Dim>::renumber_mesh(VertexId unlisted) {
+template <int Dim, int Space>
+void Workpiece<Dim, Space>::renumber_mesh(VertexId unlisted) {
   const runtime::PhaseTimer timer(report_.renumber_seconds);
   renumber(executor_, mesh_, unlisted);
   in_order_ = true;
   survey_.forget();
 }
 
-template <int Dim>
-void Workpiece<Dim>::take_metrics() {
+template <int Dim, int Space>
+void Workpiece<Dim, Space>::take_metrics() {
   parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t i) {
     const auto v = static_cast<VertexId>(i);
     if (!mesh_.vertex_alive(v)) return;
@@ -191,6 +191,7 @@ void Workpiece<Dim>::take_metrics() {
 }
 
 template class Workpiece<2>;
+template class Workpiece<2, 3>;
 template class Workpiece<3>;
 
 }  // namespace ductile::meshadapt

@@ -21,29 +21,29 @@
 namespace ductile::meshadapt {
 
 /// The mesh, its adjacency and the metrics that an adaptation starts from.
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct Start {
-  Mesh<Dim> mesh;
+  Mesh<Dim, Space> mesh;
   Neighbours<Dim> neighbours;
-  std::vector<Metric<Dim>> metric_of;  ///< [vertex]
+  std::vector<Metric<Space>> metric_of;  ///< [vertex]
 };
 
 /// Thread safety: one caller; what takes time runs on the executor.
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Workpiece {
  public:
   /// Puts the mesh in order. Refers to the options and the report.
-  Workpiece(const runtime::Executor& executor, const AdaptOptions& options, Start<Dim> start,
+  Workpiece(const runtime::Executor& executor, const AdaptOptions& options, Start<Dim, Space> start,
             AdaptReport& report);
 
   const runtime::Executor& executor() const { return executor_; }
   const AdaptOptions& options() const { return options_; }
-  Mesh<Dim>& mesh() { return mesh_; }
-  const Mesh<Dim>& mesh() const { return mesh_; }
-  Background<Dim>& background() { return background_; }
-  const Background<Dim>& background() const { return background_; }
+  Mesh<Dim, Space>& mesh() { return mesh_; }
+  const Mesh<Dim, Space>& mesh() const { return mesh_; }
+  Background<Dim, Space>& background() { return background_; }
+  const Background<Dim, Space>& background() const { return background_; }
   AdaptReport& report() { return report_; }
-  Mesh<Dim> take_mesh();
+  Mesh<Dim, Space> take_mesh();
 
   // ---- The schedule ----
   /// Begins a phase. In a mesh that came adapted, steps that look everywhere only look at what
@@ -60,7 +60,7 @@ class Workpiece {
   EdgeRange range() const;
   SmoothOptions smoothing(const Step& step) const;
   double long_edge() const;
-  EdgeSurvey<Dim>& survey_for(double longer);
+  EdgeSurvey<Dim, Space>& survey_for(double longer);
   void forget_survey() { survey_.forget(); }
 
   // ---- What kernels have seen, and what they did ----
@@ -86,9 +86,9 @@ class Workpiece {
 
   const runtime::Executor& executor_;
   const AdaptOptions& options_;
-  Mesh<Dim> mesh_;
-  Background<Dim> background_;
-  EdgeSurvey<Dim> survey_;
+  Mesh<Dim, Space> mesh_;
+  Background<Dim, Space> background_;
+  EdgeSurvey<Dim, Space> survey_;
   AdaptReport& report_;
 
   Aim aim_ = Aim::approach;

@@ -159,8 +159,7 @@ double rough_measure(const AnyMesh& mesh, double roughness) {
 /// of such vertices). Each counts once per pair of facets beyond the first.
 template <int Dim>
 double non_manifold_length(const AdjacentMesh& mesh) {
-  const BoundarySurface<Dim> surface(mesh.executor(),
-                                     sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>()));
+  const BoundarySurface<Dim> surface(mesh.executor(), sides_in<Dim>(mesh));
   double sum = 0;
   surface.each_meeting([&](std::span<const BoundaryJoint> joints) {
     if (joints.size() < 3) return;

@@ -6,9 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "checks/faults.hpp"
 #include "checks/problems.hpp"
+#include "core/determinant.hpp"
 #include "core/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
@@ -22,7 +25,7 @@ using runtime::parallel_for;
 
 namespace {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class AnyMeshChecker {
  public:
   explicit AnyMeshChecker(const AdjacentMesh& mesh)
@@ -32,8 +35,11 @@ class AnyMeshChecker {
     if (check_indices()) {
       check_volumes();
       check_vertices();
-      check_facets();
-      if constexpr (Dim == 3) check_edges();
+      if constexpr (Dim == Space)
+        check_facets();
+      else
+        check_doubled();
+      if constexpr (Space == 3) check_edges();
     }
     return problems_.take();
   }
@@ -77,7 +83,7 @@ class AnyMeshChecker {
 
   bool check_indices() {
     bool good = problems_.expect_none(
-        mesh_.coordinates.size() == mesh_.vertex_count() * Dim ? 0 : 1,
+        mesh_.coordinates.size() == mesh_.vertex_count() * Space ? 0 : 1,
         [](std::size_t) { return true; },
         [](std::size_t) { return "not every vertex has its coordinates"; });
     good = check_cells(elements(), element_name) && good;
@@ -96,11 +102,15 @@ class AnyMeshChecker {
   // ---- Volumes ----
 
   int orientation_of(std::size_t element) const {
-    std::array<Vector<Dim>, Dim + 1> p;
+    std::array<Vector<Space>, Dim + 1> p;
     for (std::size_t i = 0; i < p.size(); ++i)
-      for (std::size_t axis = 0; axis < Dim; ++axis)
-        p[i].x[axis] = mesh_.coordinates[elements().vertices[element][i] * std::size_t{Dim} + axis];
-    return orientation<Dim>(p);
+      for (std::size_t axis = 0; axis < Space; ++axis)
+        p[i].x[axis] =
+            mesh_.coordinates[elements().vertices[element][i] * std::size_t{Space} + axis];
+    if constexpr (Dim < Space)
+      return certain_area(p[0], p[1], p[2]) > 0 ? 1 : 0;
+    else
+      return orientation<Dim>(p);
   }
 
   void check_volumes() {
@@ -186,6 +196,22 @@ class AnyMeshChecker {
         });
   }
 
+  /// Of a surface, because facets show that of other meshes.
+  void check_doubled() {
+    std::vector<std::pair<Corners<Dim>, std::size_t>> key(elements().size());
+    parallel_for(executor_, key.size(), [&](std::size_t e) {
+      key[e] = {elements().vertices[e], e};
+      std::sort(key[e].first.begin(), key[e].first.end());
+    });
+    runtime::parallel_sort(executor_, std::span(key));
+    problems_.expect_none(
+        key.size(), [&](std::size_t i) { return i != 0 && key[i].first == key[i - 1].first; },
+        [&](std::size_t i) {
+          return element_name + number(key[i].second) + " has the corners of " + element_name +
+                 number(key[i - 1].second);
+        });
+  }
+
   // ---- Vertices and edges ----
 
   void check_vertices() {
@@ -235,6 +261,7 @@ class AnyMeshChecker {
 
 std::vector<std::string> mesh_faults(const AdjacentMesh& mesh) {
   const int dimension = mesh.mesh().dimension;
+  if (is_surface(mesh.mesh())) return AnyMeshChecker<2, 3>(mesh).run();
   if (dimension == 2) return AnyMeshChecker<2>(mesh).run();
   if (dimension == 3) return AnyMeshChecker<3>(mesh).run();
   return {"the dimension is " + std::to_string(dimension) + ", expected 2 or 3"};

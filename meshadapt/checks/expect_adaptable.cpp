@@ -1,5 +1,6 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/make_mesh.hpp"
+#include "geometry/surface_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -18,6 +19,12 @@ std::vector<std::string> expect_adaptable_in(const runtime::Executor& executor, 
 
 std::vector<std::string> expect_adaptable(const runtime::Executor& executor, const AnyMesh& mesh,
                                           const MakeMeshOptions& options) {
+  if (is_surface(mesh)) {
+    Neighbours<2> neighbours;
+    std::vector<std::string> warnings;
+    make_surface_mesh(executor, mesh, options, neighbours, warnings);
+    return warnings;
+  }
   return mesh.dimension == 2 ? expect_adaptable_in<2>(executor, mesh, options)
                              : expect_adaptable_in<3>(executor, mesh, options);
 }

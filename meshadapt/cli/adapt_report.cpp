@@ -28,21 +28,26 @@ MeshSummary summarise_mesh(const AnyMesh& mesh) {
           std::nullopt};
 }
 
+/// False of a surface, and in the plane.
+bool has_tetrahedra(const MeshSummary& mesh) {
+  return mesh.dimension == 3 && (mesh.tetrahedra > 0 || mesh.triangles == 0);
+}
+
 std::string counts(const MeshSummary& mesh) {
   std::string text = mesh.name + ": " + counted(mesh.vertices, "vertex", "vertices") + ", " +
                      counted(mesh.triangles, "triangle", "triangles");
-  if (mesh.dimension == 3) text += ", " + counted(mesh.tetrahedra, "tetrahedron", "tetrahedra");
+  if (has_tetrahedra(mesh)) text += ", " + counted(mesh.tetrahedra, "tetrahedron", "tetrahedra");
   return text + "\n";
 }
 
 std::size_t element_count(const MeshSummary& mesh) {
-  return mesh.dimension == 2 ? mesh.triangles : mesh.tetrahedra;
+  return has_tetrahedra(mesh) ? mesh.tetrahedra : mesh.triangles;
 }
 
 /// About how many elements the metric asks for; 0 if it was not measured.
 std::size_t elements_wanted(const MeshSummary& mesh) {
   if (!mesh.statistics || !mesh.statistics->in_metric) return 0;
-  const double each = meshadapt::complexity_of_elements(mesh.dimension, 1);
+  const double each = meshadapt::complexity_of_elements(has_tetrahedra(mesh) ? 3 : 2, 1);
   return static_cast<std::size_t>(std::lround(std::min(mesh.statistics->complexity / each, 1e18)));
 }
 

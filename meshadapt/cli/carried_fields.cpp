@@ -68,9 +68,10 @@ std::vector<meshadapt::NamedField> CarriedFields::carry(const runtime::Executor&
   AnyField all = side_by_side(values.fields, from);
   all.name = inputs_.front().string();
   const meshadapt::FieldOnMesh old{from, all};
+  const bool by_value = interpolate_ || meshadapt::is_surface(from);
   auto carried =
-      meshadapt::named_fields(interpolate_ ? meshadapt::interpolate_field(executor, old, to).field
-                                           : meshadapt::project_field(executor, old, to).field,
+      meshadapt::named_fields(by_value ? meshadapt::interpolate_field(executor, old, to).field
+                                       : meshadapt::project_field(executor, old, to).field,
                               "field");
   for (std::size_t i = 0; i < carried.size(); ++i) carried[i].name = values.fields[i].name;
   return carried;

@@ -112,7 +112,7 @@ meshadapt::AnyField fields_in(const fs::path& path, meshadapt::Warnings& warning
 /// The number of entities of a mesh that a field has values for.
 std::size_t entity_count(const meshadapt::AnyMesh& mesh, meshadapt::NamedField::Place place) {
   if (place == meshadapt::NamedField::Place::vertices) return mesh.vertex_count();
-  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  return meshadapt::element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
 /// Moves a size or a metric from elements to vertices: the mean of the logarithms around each.

@@ -184,7 +184,8 @@ int work(const Executor& executor, const Arguments& arguments) {
   std::optional<AnyField> metric;
   if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
   const bool has_elements =
-      !(mesh.dimension == 2 ? mesh.triangles.reference.empty() : mesh.tetrahedra.reference.empty());
+      !(meshadapt::element_dimension(mesh) == 2 ? mesh.triangles.reference.empty()
+                                                : mesh.tetrahedra.reference.empty());
   const AnyField* const given = metric ? &*metric : nullptr;
   const auto json = json_output(arguments);
   const bool shown = json != standard_output;

@@ -54,6 +54,14 @@ inline double plain_determinant(const std::array<Vector<3>, 4>& p) {
   return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
 }
 
+/// Twice the area of a triangle in space; 0 if rounding could have made it.
+inline double certain_area(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c) {
+  constexpr double bound = 16 * std::numeric_limits<double>::epsilon();
+  const Vector<3> u = b - a, v = c - a;
+  const double area = norm(cross(u, v));
+  return area > bound * norm(u) * norm(v) ? area : 0;
+}
+
 /// The facet opposite `vertex`, which is one of the corners. Branch-free, because branches would be
 /// unpredictable.
 template <int Dim>

@@ -111,13 +111,13 @@ template <int Dim, std::size_t n>
 
 /// Sum of the squared metric lengths of all edges, by the identity
 /// sum_{i<j} |p_i - p_j|^2 = n sum |p_i|^2 - |sum p_i|^2 with p_0 as the origin.
-template <int Dim>
+template <int Dim, int Space>
 [[gnu::always_inline]] inline double sum_of_squared_lengths(
-    const Metric<Dim>& metric, const std::array<const Site<Dim>*, Dim + 1>& corner) {
+    const Metric<Space>& metric, const std::array<const Site<Space>*, Dim + 1>& corner) {
   double squares = 0;
-  Vector<Dim> sum;
+  Vector<Space> sum;
   for (std::size_t i = 1; i < corner.size(); ++i) {
-    const Vector<Dim> d = corner[i]->position - corner[0]->position;
+    const Vector<Space> d = corner[i]->position - corner[0]->position;
     squares += squared_length(metric, d);
     sum += d;
   }
@@ -134,51 +134,73 @@ Number quality_from(Number volume, Number squares) {
     return 12 * root3 * volume / (squares * std::sqrt(squares));
 }
 
+/// The square of twice the metric area of the triangle that u and v span in space.
+[[gnu::always_inline]] inline double squared_area(const Metric<3>& metric, const Vector<3>& u,
+                                                  const Vector<3>& v) {
+  const Vector<3> mv = product(metric, v);
+  const double uu = squared_length(metric, u), vv = dot(v, mv), uv = dot(u, mv);
+  return uu * vv - uv * uv;
+}
+
+/// The ingredients of quality(); the volume is not positive for an element that may be degenerate.
+struct VolumeAndSquares {
+  double volume = 0, squares = 0;
+};
+
+/// The metric volume of an element in its mean metric, times 2 in 2D or 6 in 3D, and the sum of its
+/// squared edge lengths.
+template <int Dim>
+[[gnu::always_inline]] inline VolumeAndSquares volume_and_squares(
+    const std::array<const Site<Dim>*, Dim + 1>& corner) {
+  std::array<Vector<Dim>, Dim + 1> p;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
+  const double determinant = certain_determinant<Dim>(p);
+  if (!(determinant > 0)) return {determinant};
+  const auto [metric, scale] = mean_metric<Dim>(corner);
+  return {metric_volume<Dim>(determinant, scale), sum_of_squared_lengths<Dim>(metric, corner)};
+}
+/// The same of a triangle in space, which has no sign.
+template <int Dim>
+[[gnu::always_inline]] inline VolumeAndSquares volume_and_squares(
+    const std::array<const Site<3>*, 3>& corner) {
+  if (!(certain_area(corner[0]->position, corner[1]->position, corner[2]->position) > 0)) return {};
+  const Metric<3> metric = mean_metric<3>(corner).metric;
+  const double square = squared_area(metric, corner[1]->position - corner[0]->position,
+                                     corner[2]->position - corner[0]->position);
+  return {std::sqrt(std::max(square, 0.0)), sum_of_squared_lengths<2>(metric, corner)};
+}
+
 /// Quality of an element in its mean metric: 4 sqrt(3) A / (sum of squared lengths) in 2D; the
 /// volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D (Parthasarathy, Graichen
 /// & Hathaway, Finite Elem. Anal. Des. 15, 1994). At most 1, for a regular element whose corners'
 /// metrics differ by factors; 0 or less for one that is not certain to have a positive volume.
-template <int Dim>
-double quality(const std::array<const Site<Dim>*, Dim + 1>& corner) {
-  std::array<Vector<Dim>, Dim + 1> p;
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
-  const double determinant = certain_determinant<Dim>(p);
-  if (!(determinant > 0)) return determinant;
-  const auto [metric, scale] = mean_metric<Dim>(corner);
-  return quality_from<Dim>(metric_volume<Dim>(determinant, scale),
-                           sum_of_squared_lengths<Dim>(metric, corner));
+template <int Dim, int Space>
+double quality(const std::array<const Site<Space>*, Dim + 1>& corner) {
+  const auto [volume, squares] = volume_and_squares<Dim>(corner);
+  return volume > 0 ? quality_from<Dim>(volume, squares) : volume;
 }
 
-/// The ingredients of quality(); the volume is 0 unless quality(corner) > bar, which is decided
+/// The measure of an element; the volume is 0 unless quality(corner) > bar, which is decided
 /// without root and division; bar is not negative.
-struct VolumeAndSquares {
-  double volume = 0, squares = 0;
-};
-/// See VolumeAndSquares.
-template <int Dim>
+template <int Dim, int Space>
 [[gnu::always_inline]] inline VolumeAndSquares if_quality_above(
-    const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
-  std::array<Vector<Dim>, Dim + 1> p;
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
-  const double determinant = certain_determinant<Dim>(p);
-  if (!(determinant > 0)) return {};
-  const auto [metric, scale] = mean_metric<Dim>(corner);
-  const double volume = metric_volume<Dim>(determinant, scale);
-  const double squares = sum_of_squared_lengths<Dim>(metric, corner);
+    const std::array<const Site<Space>*, Dim + 1>& corner, double bar) {
+  const auto [volume, squares] = volume_and_squares<Dim>(corner);
+  if (!(volume > 0)) return {};
   const bool above = Dim == 2 ? 2 * std::sqrt(3.0) * volume > bar * squares
                               : 432 * volume * volume > bar * bar * (squares * squares * squares);
   return above ? VolumeAndSquares{volume, squares} : VolumeAndSquares{};
 }
 
 /// quality(corner) > bar, decided without the root and the division; bar is not negative.
-template <int Dim>
-bool quality_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+template <int Dim, int Space>
+bool quality_above(const std::array<const Site<Space>*, Dim + 1>& corner, double bar) {
   return if_quality_above<Dim>(corner, bar).volume > 0;
 }
 
 /// quality(corner) if that is above a bar that is not negative, 0 otherwise.
-template <int Dim>
-double quality_if_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+template <int Dim, int Space>
+double quality_if_above(const std::array<const Site<Space>*, Dim + 1>& corner, double bar) {
   const auto [volume, squares] = if_quality_above<Dim>(corner, bar);
   return volume > 0 ? quality_from<Dim>(volume, squares) : 0;
 }

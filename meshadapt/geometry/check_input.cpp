@@ -18,7 +18,7 @@ using runtime::Executor;
 
 namespace {
 
-template <int Dim>
+template <int Dim, int Space>
 class InputChecker {
  public:
   InputChecker(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options)
@@ -34,7 +34,7 @@ class InputChecker {
 
   static Wording place_word(std::size_t coordinate) {
     return {"coordinates[" + std::to_string(coordinate) + "] is",
-            entity("vertex", coordinate / Dim) + " has a coordinate"};
+            entity("vertex", coordinate / Space) + " has a coordinate"};
   }
 
   void check_options() const {
@@ -63,7 +63,7 @@ class InputChecker {
       throw InputError("functions: expected none beside a geometry, which has its own");
     if (!(options_.hausdorff_tolerance > 0))
       throw InputError("functions: expected a hausdorff_tolerance with them, found none");
-    const auto& found = Dim == 2 ? any_.edges.reference : any_.triangles.reference;
+    const auto& found = Space == 2 ? any_.edges.reference : any_.triangles.reference;
     for (const SurfaceFunction& function : functions)
       if (!(options_.complete_boundary && function.reference == 0) &&
           std::find(found.begin(), found.end(), function.reference) == found.end())
@@ -74,8 +74,8 @@ class InputChecker {
   void check_geometry() const {
     if (!options_.geometry) return;
     const double tolerance = options_.hausdorff_tolerance;
-    if (options_.geometry->dimension() != Dim)
-      throw InputError("geometry: expected one of dimension " + std::to_string(Dim) +
+    if (options_.geometry->dimension() != Space)
+      throw InputError("geometry: expected one of dimension " + std::to_string(Space) +
                        ", as the mesh is, found dimension " +
                        std::to_string(options_.geometry->dimension()));
     if (tolerance != 0 && tolerance != options_.geometry->tolerance())
@@ -91,7 +91,7 @@ class InputChecker {
         first_bad(executor_, x.size(), [&](std::size_t i) { return std::abs(x[i]) > largest; });
     if (far != no_index) fail(place_word(far) + " beyond 1e50; scale the mesh");
     const double extent = runtime::parallel_reduce(
-        executor_, x.size(), 0.0, [&](std::size_t i) { return std::abs(x[i] - x[i % Dim]); },
+        executor_, x.size(), 0.0, [&](std::size_t i) { return std::abs(x[i] - x[i % Space]); },
         [](double a, double b) { return std::max(a, b); });
     if (extent < smallest) fail("the mesh is smaller than 1e-50; scale it");
   }
@@ -100,13 +100,13 @@ class InputChecker {
     expect_coordinates(any_);
     expect_references(any_);
     const auto& cells = elements_in<Dim>(any_);
-    if (any_.dimension != Dim) fail("the mesh has the wrong dimension");
+    if (any_.dimension != Space) fail("the mesh has the wrong dimension");
     if (cells.size() == 0) {
       const std::string instead = Dim == 3 ? instead_of_tetrahedra(any_) : "";
       fail(std::string("no ") + element_name<Dim>() + " in the mesh" +
            (instead.empty() ? "; there is nothing to adapt" : ", " + instead));
     }
-    if (Dim == 2 && any_.tetrahedra.size() != 0) fail("tetrahedra in a mesh of dimension 2");
+    if (Space == 2 && any_.tetrahedra.size() != 0) fail("tetrahedra in a mesh of dimension 2");
     if (any_.vertex_count() >= none || cells.size() >= none / 4)
       fail("too many entities for 32-bit numbers");
     const std::size_t bad_vertex =
@@ -129,6 +129,10 @@ class InputChecker {
              std::to_string(any_.vertex_count()));
   }
 
+  /// Triangles of a surface that name a vertex twice have no area, and are left out.
+  template <int N>
+  static constexpr bool may_repeat = Dim < Space&& N == 3;
+
   template <int N>
   void check_cells(const Cells<N>& cells, const char* kind) const {
     const std::size_t bad = first_bad(executor_, cells.size(), [&](std::size_t i) {
@@ -136,7 +140,7 @@ class InputChecker {
       for (std::size_t a = 0; a < corners.size(); ++a) {
         if (corners[a] >= any_.vertex_count()) return true;
         for (std::size_t b = 0; b < a; ++b)
-          if (corners[a] == corners[b]) return true;
+          if (corners[a] == corners[b] && !may_repeat<N>) return true;
       }
       return false;
     });
@@ -155,9 +159,9 @@ class InputChecker {
 
 }  // namespace
 
-template <int Dim>
+template <int Dim, int Space>
 void check_input(const Executor& executor, const AnyMesh& mesh, const MakeMeshOptions& options) {
-  InputChecker<Dim>(executor, mesh, options).run();
+  InputChecker<Dim, Space>(executor, mesh, options).run();
 }
 
 std::vector<bool> marked(const AnyMesh& mesh, std::size_t count,
@@ -180,6 +184,7 @@ Wording cell_word(const std::string& kind, std::size_t index) {
 void refuse_mesh(const AnyMesh& mesh, const Wording& what) { refuse(name_of(mesh) + ": " + what); }
 
 template void check_input<2>(const Executor&, const AnyMesh&, const MakeMeshOptions&);
+template void check_input<2, 3>(const Executor&, const AnyMesh&, const MakeMeshOptions&);
 template void check_input<3>(const Executor&, const AnyMesh&, const MakeMeshOptions&);
 
 }  // namespace ductile::meshadapt

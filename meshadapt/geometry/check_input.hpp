@@ -17,7 +17,7 @@ namespace ductile::meshadapt {
 /// Throws InputError unless the options are in range, each entity of the mesh names vertices that
 /// there are, and none twice, and coordinates are finite and neither too large nor too small for
 /// volumes. Thread safety: one caller; runs on the executor.
-template <int Dim>
+template <int Dim, int Space = Dim>
 void check_input(const runtime::Executor& executor, const AnyMesh& mesh,
                  const MakeMeshOptions& options);
 
@@ -34,6 +34,8 @@ Wording cell_word(const std::string& kind, std::size_t index);
 
 extern template void check_input<2>(const runtime::Executor&, const AnyMesh&,
                                     const MakeMeshOptions&);
+extern template void check_input<2, 3>(const runtime::Executor&, const AnyMesh&,
+                                       const MakeMeshOptions&);
 extern template void check_input<3>(const runtime::Executor&, const AnyMesh&,
                                     const MakeMeshOptions&);
 

@@ -55,7 +55,7 @@ void find_non_manifold(const AnyMesh& mesh, BoundarySurface<Dim>& surface,
     places.push_back(box_of<Dim>(mesh, surface.side(side).corners));
   };
   surface.each_meeting([&](std::span<const BoundaryJoint> joints) {
-    if (joints.size() == 2) return;
+    if (joints.size() <= 2) return;
     for (const BoundaryJoint& joint : joints) add(joint.side);
   });
   std::vector<std::uint32_t> fan_at(mesh.vertex_count(), none);
@@ -144,8 +144,8 @@ std::vector<Box<Dim>> damaged_places(const AdjacentMesh& before, const AdjacentM
   const Executor& executor = after.executor();
   std::vector<Box<Dim>> places;
   find_crossings<Dim>(executor, before.mesh(), after.mesh(), places);
-  BoundarySurface<Dim> old(executor, sides_of<Dim>(executor, before.adjacency<Dim>()));
-  BoundarySurface<Dim> now(executor, sides_of<Dim>(executor, after.adjacency<Dim>()));
+  BoundarySurface<Dim> old(executor, sides_in<Dim>(before));
+  BoundarySurface<Dim> now(executor, sides_in<Dim>(after));
   find_non_manifold<Dim>(after.mesh(), now, places);
   find_inner_facets<Dim>(before.mesh(), after.mesh(), now, places);
   if (places.empty())
@@ -159,7 +159,7 @@ std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   double distance) {
   const Executor& executor = mesh.executor();
   const BoxHierarchy<Dim> index(executor, places.size(), [&](std::size_t i) { return places[i]; });
-  const auto sides = sides_of<Dim>(executor, mesh.adjacency<Dim>());
+  const auto sides = sides_in<Dim>(mesh);
   auto near = runtime::parallel_collect<std::uint32_t>(
       executor, sides.size(), [&](std::size_t s, auto&& append) {
         Box<Dim> box = box_of<Dim>(mesh.mesh(), sides[s].corners);

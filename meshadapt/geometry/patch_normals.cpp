@@ -229,6 +229,7 @@ Vector<3> PatchNormals::normal_at(Node node) const {
     quadric.measure(n.offset);
     farthest = std::max(farthest, dot(n.offset, n.offset));
   }
+  quadric.turn_along();
   // Close neighbours say more about the normal, unless they are so close that noise decides.
   constexpr double too_close = 0.1;
   for (const Neighbour& n : neighbours)

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
@@ -20,6 +21,22 @@ class Quadric {
   void measure(const Vector<3>& offset) {
     const Vector<3> flat = offset - dot(offset, up_) * up_;
     if (dot(flat, flat) > dot(along_, along_)) along_ = flat;
+    across_ = cross(up_, along_);
+    for (std::size_t column = 0, at = 0; column < 3; ++column)
+      for (std::size_t row = 0; row <= column; ++row)
+        spread_.m[at++] += flat.x[row] * flat.x[column];
+  }
+
+  /// To be called then: goes along points that are stretched by more than 10, because there a slope
+  /// towards far ones cannot be told from a bend across.
+  void turn_along() {
+    constexpr double stretched = 10;
+    const PrincipalAxes<3> axes = principal_axes(spread_);
+    std::array<std::size_t, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return axes.value[a] > axes.value[b]; });
+    if (!(axes.value[order[0]] > stretched * stretched * axes.value[order[1]])) return;
+    along_ = norm(along_) * axes.vector[order[0]];
     across_ = cross(up_, along_);
   }
 
@@ -76,6 +93,7 @@ class Quadric {
   }
 
   Vector<3> up_, along_, across_;
+  Metric<3> spread_;
   std::array<std::array<double, 5>, 5> matrix_{};  // its lower triangle
   std::array<double, 5> right_{};
 };

@@ -8,6 +8,7 @@
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/make_mesh.hpp"
+#include "geometry/surface_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -127,10 +128,17 @@ template <int Dim>
 double roughness(const AnyMesh& mesh) {
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
-  try {
-    const auto made = make_mesh<Dim>(runtime::Executor({.threads = 1}), mesh,
-                                     {.complete_boundary = true}, neighbours, warnings);
+  const runtime::Executor executor({.threads = 1});
+  const auto roughness_of = [](const auto& made) {
     return made.rounding ? made.rounding->tolerance : 0;
+  };
+  try {
+    if (is_surface(mesh)) {
+      Neighbours<2> of_triangles;
+      return roughness_of(make_surface_mesh(executor, mesh, {}, of_triangles, warnings));
+    }
+    return roughness_of(
+        make_mesh<Dim>(executor, mesh, {.complete_boundary = true}, neighbours, warnings));
   } catch (const InputError&) {
     return 0;
   }

@@ -20,8 +20,6 @@ constexpr const char* by_meshio_netcdf =
 constexpr const char* by_meshio_avs =
     "; convert it first, as with meshio convert --input-format avsucd FILE mesh.vtu";
 constexpr const char* by_gmsh = "; convert it first, as with gmsh FILE -save -o mesh.msh";
-constexpr const char* by_filling =
-    ", a surface without tetrahedra; fill it first, as with Gmsh or TetGen, and give that mesh";
 constexpr const char* by_paraview = "; save it as .vtu first, as in ParaView by Save Data";
 constexpr const char* by_foam =
     "; convert it first, as with foamToVTK, and split its cells into tetrahedra";
@@ -44,10 +42,7 @@ constexpr std::array beginnings{
     Foreign{"CDF\x02", "Exodus or netCDF", by_meshio_netcdf},
     Foreign{"CDF\x05", "Exodus or netCDF", by_meshio_netcdf},
     Foreign{"@(#)ADF Database", "CGNS (ADF)", by_paraview},
-    Foreign{"ply\n", "PLY", by_filling},
-    Foreign{"ply\r", "PLY", by_filling},
-    Foreign{"OFF\n", "OFF", by_filling},
-    Foreign{"solid", "STL", by_filling},
+    Foreign{"OFF\n", "OFF", by_meshio},
     Foreign{"mesh3d", "Netgen", by_meshio},
     Foreign{"BEGIN BULK", "Nastran", by_meshio},
     Foreign{"CEND", "Nastran", by_meshio},
@@ -80,10 +75,7 @@ constexpr std::array endings{
     Foreign{".h5m", "MOAB", by_meshio_hdf},
     Foreign{".vtkhdf", "VTKHDF", by_paraview},
     Foreign{".foam", "OpenFOAM", by_foam},
-    Foreign{".stl", "STL", by_filling},
-    Foreign{".obj", "Wavefront OBJ", by_filling},
-    Foreign{".ply", "PLY", by_filling},
-    Foreign{".off", "OFF", by_filling},
+    Foreign{".off", "OFF", by_meshio},
     Foreign{".bdf", "Nastran", by_meshio},
     Foreign{".nas", "Nastran", by_meshio},
     Foreign{".fem", "Nastran", by_meshio},
@@ -123,15 +115,6 @@ void refuse_hdf5(const FileBytes& bytes, std::string_view text) {
   refuse(bytes, "HDF5", by_paraview);
 }
 
-/// A binary STL has 80 bytes of any kind, a count and 50 bytes for each triangle.
-bool is_binary_stl(std::string_view text) {
-  if (text.size() < 84) return false;
-  const auto byte = [&](std::size_t i) {
-    return static_cast<std::size_t>(static_cast<unsigned char>(text[80 + i]));
-  };
-  return text.size() == 84 + 50 * (byte(0) | byte(1) << 8U | byte(2) << 16U | byte(3) << 24U);
-}
-
 bool begins_as_gmf(std::string_view text) {
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
@@ -149,7 +132,6 @@ void refuse_foreign(const FileBytes& bytes) {
   std::string_view text(bytes.begin(), bytes.size);
   if (begins_as_gmf(text)) return;
   if (text.starts_with("\x89HDF\r\n")) refuse_hdf5(bytes, text);
-  if (is_binary_stl(text)) refuse(bytes, "STL", by_filling);
   const std::string_view head = text.substr(0, 1024);
   if (head.find("<Xdmf") != std::string_view::npos) refuse(bytes, "XDMF", by_meshio_hdf);
   if (head.find("<dolfin") != std::string_view::npos) refuse(bytes, "a mesh of DOLFIN", by_meshio);

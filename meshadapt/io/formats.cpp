@@ -52,10 +52,14 @@ constexpr std::array rows{
               write_vtk},
     FormatRow{
         {".su2", "SU2, with markers by name", true, true, false}, is_su2, mesh_from_su2, write_su2},
-    FormatRow{{".stl", "STL, binary, the surface in 3D", false, true, false},
-              nullptr,
-              nullptr,
-              write_stl},
+    FormatRow{
+        {".stl", "STL, surfaces in 3D", true, true, false}, is_stl, mesh_from<read_stl>, write_stl},
+    FormatRow{
+        {".ply", "PLY, surfaces in 3D", true, true, false}, is_ply, mesh_from<read_ply>, write_ply},
+    FormatRow{{".obj", "Wavefront OBJ, surfaces in 3D", true, true, false},
+              is_obj,
+              mesh_from<read_obj>,
+              write_obj},
 };
 
 const FormatRow* row_with(std::string_view ending) {

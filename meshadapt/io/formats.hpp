@@ -25,6 +25,9 @@ std::span<const FormatRow> format_rows();
 // ---- Detection: whether bytes begin as a file of the format does ----
 
 bool is_msh(std::string_view bytes);
+bool is_obj(std::string_view bytes);
+bool is_ply(std::string_view bytes);
+bool is_stl(std::string_view bytes);
 bool is_su2(std::string_view bytes);
 bool is_vtk(std::string_view bytes);
 bool is_vtu(std::string_view bytes);
@@ -39,6 +42,17 @@ AnyMesh read_gmf(const FileBytes& bytes, Warnings* warnings);
 
 /// Gmsh's files, versions 2.0 to 2.2 and 4.1, text and binary in either byte order.
 SpatialMesh read_msh(const FileBytes& bytes, Warnings* warnings);
+
+/// Surfaces. Faces of more than three corners are cut into triangles, with a warning. Groups, whose
+/// names become names of references, are references, numbered unless they are called by a number.
+SpatialMesh read_obj(const FileBytes& bytes, Warnings* warnings);
+
+/// Surfaces, text and binary in either byte order; faces may have a property `reference`.
+SpatialMesh read_ply(const FileBytes& bytes, Warnings* warnings);
+
+/// Surfaces, text and binary. Points with the same coordinates become one vertex. Several solids of
+/// a text get the references 1, 2 and so on, and their names.
+SpatialMesh read_stl(const FileBytes& bytes, Warnings* warnings);
 
 /// Facets get the reference of their marker. A marker whose name is a number has that reference.
 /// Others get the numbers 1, 2, 3 and so on that are still free, in the order of the file, and
@@ -61,9 +75,17 @@ void write_gmf(AtomicOutputs& outputs, const std::filesystem::path& path, const 
 void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options);
 
-/// The triangles on the boundary of a mesh of dimension 3, seen from outside, in single precision.
-/// Throws InputError for meshes of dimension 2, too.
+/// The triangles of a surface, or on the boundary of tetrahedra, seen from outside; binary, in
+/// single precision, or text. Throws InputError for meshes of dimension 2, too.
 void write_stl(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// The same, with references as groups by their names, text.
+void write_obj(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// The same, with references as a property of faces; binary, or text.
+void write_ply(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options);
 
 /// Each reference of facets becomes a marker, called by its names, several joined by '+', or else

@@ -89,7 +89,8 @@ std::string what_is(const SpatialField& field) {
 /// [vertex or element] its number in the file.
 std::vector<std::size_t> places_of(const SpatialField& field, const SpatialMesh& spatial) {
   if (field.place == NamedField::Place::elements)
-    return spatial.mesh.dimension == 2 ? spatial.cell_of_triangle : spatial.cell_of_tetrahedron;
+    return element_dimension(spatial.mesh) == 2 ? spatial.cell_of_triangle
+                                                : spatial.cell_of_tetrahedron;
   std::vector<std::size_t> all(spatial.mesh.vertex_count());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   return all;
@@ -140,7 +141,7 @@ void expect_text(const std::string& name, std::size_t index) {
 
 std::size_t field_places(const AnyMesh& mesh, NamedField::Place place) {
   if (place == NamedField::Place::vertices) return mesh.vertex_count();
-  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  return element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
 }  // namespace

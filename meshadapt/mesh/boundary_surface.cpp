@@ -29,6 +29,21 @@ runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& execut
 }
 
 template <int Dim>
+runtime::UnsetVector<BoundarySide<Dim>> sides_in(const AdjacentMesh& mesh,
+                                                 std::span<const std::uint32_t> region_of) {
+  if (Dim == 2 || !is_surface(mesh.mesh()))
+    return sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>(), region_of);
+  const auto& triangles = facets_in<Dim>(mesh.mesh()).vertices;
+  auto sides = runtime::make_unset_vector<BoundarySide<Dim>>(mesh.executor(), triangles.size());
+  runtime::parallel_for(mesh.executor(), sides.size(), [&](std::size_t t) {
+    sides[t] = {triangles[t], region_of.empty() ? 0 : region_of[t]};
+    std::sort(sides[t].corners.begin(), sides[t].corners.end());
+  });
+  runtime::parallel_sort(mesh.executor(), std::span(sides));
+  return sides;
+}
+
+template <int Dim>
 BoundarySurface<Dim>::BoundarySurface(const runtime::Executor& executor,
                                       runtime::UnsetVector<BoundarySide<Dim>> sides)
     : sides_(std::move(sides)),
@@ -110,6 +125,10 @@ template runtime::UnsetVector<BoundarySide<2>> sides_of(const runtime::Executor&
 template runtime::UnsetVector<BoundarySide<3>> sides_of(const runtime::Executor&,
                                                         const Adjacency<3>&,
                                                         std::span<const std::uint32_t>);
+template runtime::UnsetVector<BoundarySide<2>> sides_in<2>(const AdjacentMesh&,
+                                                           std::span<const std::uint32_t>);
+template runtime::UnsetVector<BoundarySide<3>> sides_in<3>(const AdjacentMesh&,
+                                                           std::span<const std::uint32_t>);
 template class BoundarySurface<2>;
 template class BoundarySurface<3>;
 

@@ -45,6 +45,11 @@ runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& execut
                                                  const Adjacency<Dim>& adjacency,
                                                  std::span<const std::uint32_t> region_of = {});
 
+/// The same; those of a surface alone are its triangles.
+template <int Dim>
+runtime::UnsetVector<BoundarySide<Dim>> sides_in(const AdjacentMesh& mesh,
+                                                 std::span<const std::uint32_t> region_of = {});
+
 template <int Dim>
 class BoundarySurface {
  public:

@@ -13,8 +13,8 @@ namespace {
 
 /// The point closest to the origin in the affine span of the chosen corners: weights that sum to 1
 /// and may be negative. False if the corners are degenerate.
-template <int Dim>
-bool closest_in_span(const std::array<Vector<Dim>, Dim + 1>& corner, unsigned chosen,
+template <int Dim, int Space>
+bool closest_in_span(const std::array<Vector<Space>, Dim + 1>& corner, unsigned chosen,
                      Weights<Dim>& weight) {
   std::size_t base = 0;
   while ((chosen >> base & 1U) == 0) ++base;
@@ -22,7 +22,7 @@ bool closest_in_span(const std::array<Vector<Dim>, Dim + 1>& corner, unsigned ch
   const auto moves = [&](std::size_t unknown) {
     return unknown + 1 > base && (chosen >> (unknown + 1) & 1U) != 0;
   };
-  for (std::size_t axis = 0; axis < Dim; ++axis) {
+  for (std::size_t axis = 0; axis < Space; ++axis) {
     std::array<double, Dim> row{};
     for (std::size_t i = 0; i < Dim; ++i)
       if (moves(i)) row[i] = corner[i + 1].x[axis] - corner[base].x[axis];
@@ -46,16 +46,17 @@ bool closest_in_span(const std::array<Vector<Dim>, Dim + 1>& corner, unsigned ch
 
 /// The point of an element closest to `point`: the best over the element, its facets, edges and
 /// corners.
-template <int Dim>
-ClosestPoint<Dim> closest_in(std::array<Vector<Dim>, Dim + 1> corner, const Vector<Dim>& point) {
+template <int Dim, int Space>
+ClosestPoint<Dim> closest_in(std::array<Vector<Space>, Dim + 1> corner,
+                             const Vector<Space>& point) {
   ClosestPoint<Dim> best;
   best.squared_distance = std::numeric_limits<double>::infinity();
-  for (Vector<Dim>& p : corner) p -= point;
+  for (Vector<Space>& p : corner) p -= point;
   for (unsigned chosen = 1; chosen < 1U << (Dim + 1); ++chosen) {
     Weights<Dim> weight;
-    if (!closest_in_span<Dim>(corner, chosen, weight)) continue;
+    if (!closest_in_span<Dim, Space>(corner, chosen, weight)) continue;
     if (*std::min_element(weight.begin(), weight.end()) < 0) continue;
-    Vector<Dim> at;
+    Vector<Space> at;
     for (std::size_t i = 0; i <= Dim; ++i) at += weight[i] * corner[i];
     if (dot(at, at) >= best.squared_distance) continue;
     best.weight = weight;
@@ -66,19 +67,19 @@ ClosestPoint<Dim> closest_in(std::array<Vector<Dim>, Dim + 1> corner, const Vect
 
 }  // namespace
 
-template <int Dim>
-BoxTree<Dim>::BoxTree(const Executor& executor, const Simplices<Dim>& mesh)
+template <int Dim, int Space>
+BoxTree<Dim, Space>::BoxTree(const Executor& executor, const Simplices<Dim, Space>& mesh)
     : mesh_(mesh), boxes_(executor, mesh.corners_of.size(), [&](std::size_t e) {
         return box_around(mesh.points(static_cast<ElementId>(e)));
       }) {}
 
-template <int Dim>
-ClosestPoint<Dim> BoxTree<Dim>::closest(const Vector<Dim>& point) const {
+template <int Dim, int Space>
+ClosestPoint<Dim> BoxTree<Dim, Space>::closest(const Vector<Space>& point) const {
   ClosestPoint<Dim> best;
   best.squared_distance = std::numeric_limits<double>::infinity();
   boxes_.visit_near(point, best.squared_distance, [&](std::size_t place) {
     const ElementId element = boxes_.order()[place];
-    auto found = closest_in<Dim>(mesh_.points(element), point);
+    auto found = closest_in<Dim, Space>(mesh_.points(element), point);
     found.element = element;
     if (found.squared_distance < best.squared_distance) best = found;
   });
@@ -90,6 +91,7 @@ ClosestPoint<Dim> BoxTree<Dim>::closest(const Vector<Dim>& point) const {
 }
 
 template class BoxTree<2>;
+template class BoxTree<2, 3>;
 template class BoxTree<3>;
 
 }  // namespace ductile::meshadapt

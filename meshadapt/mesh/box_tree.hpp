@@ -17,23 +17,24 @@ struct ClosestPoint {
   double squared_distance = 0;
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class BoxTree {
  public:
   /// Refers to the arrays of `mesh`. Throws std::bad_alloc.
-  BoxTree(const runtime::Executor& executor, const Simplices<Dim>& mesh);
+  BoxTree(const runtime::Executor& executor, const Simplices<Dim, Space>& mesh);
 
   /// Finds the closest point of the mesh. Thread safety: any thread.
-  ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
+  ClosestPoint<Dim> closest(const Vector<Space>& point) const;
 
   std::size_t bytes() const { return boxes_.bytes(); }
 
  private:
-  Simplices<Dim> mesh_;
-  BoxHierarchy<Dim> boxes_;  // of elements
+  Simplices<Dim, Space> mesh_;
+  BoxHierarchy<Space> boxes_;  // of elements
 };
 
 extern template class BoxTree<2>;
+extern template class BoxTree<2, 3>;
 extern template class BoxTree<3>;
 
 }  // namespace ductile::meshadapt

@@ -58,16 +58,12 @@ double extent(const std::array<Range, 3>& range_of) {
   return widest;
 }
 
-/// A thicker mesh is a surface in space, which cannot be adapted.
+/// A thicker mesh is a surface in space.
 bool is_flat(const std::array<Range, 3>& range_of, std::size_t axis) {
   constexpr double share = 1e-6, single = 2 * std::numeric_limits<float>::epsilon();
   const double across = extent(range_of);
   const double rounding = std::min(single * range_of[axis].magnitude(), 100 * share * across);
   return range_of[axis].width() <= share * across + rounding;
-}
-
-bool is_surface(const AnyMesh& mesh) {
-  return mesh.dimension == 3 && mesh.tetrahedra.size() == 0 && mesh.triangles.size() != 0;
 }
 
 void drop(AnyMesh& mesh, std::size_t axis) {
@@ -112,8 +108,7 @@ std::string instead_of_tetrahedra(const AnyMesh& mesh) {
     return text + " in a plane " + plane + "; give them as a mesh of dimension 2 (flatten)";
   return text + " in no plane x, y or z = constant (" + axis_names[axis] + " varies least, by " +
          number(range_of[axis].width()) +
-         "); a surface is adapted as the boundary of tetrahedra, a plane mesh when turned into z = "
-         "0";
+         "): a surface, for which this cannot be done; a plane mesh must be turned into z = 0";
 }
 
 }  // namespace ductile::meshadapt

@@ -14,8 +14,8 @@ namespace ductile::meshadapt {
 using runtime::Executor;
 using runtime::parallel_for;
 
-template <int Dim>
-void Mesh<Dim>::grow(const Executor& executor, std::size_t vertices, std::size_t elements) {
+template <int Dim, int Space>
+void Mesh<Dim, Space>::grow(const Executor& executor, std::size_t vertices, std::size_t elements) {
   runtime::FreshMemory fresh;
   const auto resize = [&](std::size_t n, auto&... arrays) {
     (arrays.resize_for_overwrite(n, fresh), ...);
@@ -28,8 +28,8 @@ void Mesh<Dim>::grow(const Executor& executor, std::size_t vertices, std::size_t
 }
 
 /// Chunks that end where the lowest corner of the elements, if they are in order, changes.
-template <int Dim>
-static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim, Space>& mesh) {
   auto bounds = GroupingBounds::even(executor, mesh.element_slots(), mesh.vertex_slots());
   for (std::size_t c = 1; c < bounds.chunk_count(); ++c) {
     const Corners<Dim>& corners = mesh.corners_of[bounds.items[c]];
@@ -40,8 +40,8 @@ static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>
   return bounds;
 }
 
-template <int Dim>
-void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+void rebuild_elements_of(const Executor& executor, Mesh<Dim, Space>& mesh) {
   auto count_of = runtime::make_unset_vector<std::uint32_t>(executor, mesh.vertex_slots());
   auto& lists = mesh.elements_of;
   Grouping grouping(executor, bounds_by_lowest(executor, mesh), std::span(count_of),
@@ -70,9 +70,9 @@ static bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t boun
   return any != 0;
 }
 
-template <int Dim>
-runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
-                                                std::uint32_t after) {
+template <int Dim, int Space>
+runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor,
+                                                const Mesh<Dim, Space>& mesh, std::uint32_t after) {
   constexpr std::size_t stretch = 64;
   auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -93,8 +93,8 @@ runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor, const 
   return marked;
 }
 
-template <int Dim>
-void update_qualities(const Executor& executor, Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+void update_qualities(const Executor& executor, Mesh<Dim, Space>& mesh) {
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.alive(static_cast<ElementId>(e)))
       mesh.quality_of[e] = static_cast<float>(mesh.quality_at(mesh.corners_of[e]));
@@ -102,14 +102,19 @@ void update_qualities(const Executor& executor, Mesh<Dim>& mesh) {
 }
 
 template struct Mesh<2>;
+template struct Mesh<2, 3>;
 template struct Mesh<3>;
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
+template void rebuild_elements_of(const Executor&, Mesh<2, 3>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
 template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&,
+                                                         std::uint32_t);
+template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<2, 3>&,
                                                          std::uint32_t);
 template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
                                                          std::uint32_t);
 template void update_qualities(const Executor&, Mesh<2>&);
+template void update_qualities(const Executor&, Mesh<2, 3>&);
 template void update_qualities(const Executor&, Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -1,8 +1,9 @@
 /// @file
-/// Mesh<Dim>: a mesh while it is being adapted. Elements know their corners, vertices know their
-/// elements, and element neighbours are found by intersecting two such lists. Boundary facets and
-/// internal interfaces are not stored apart: an element's facet carries the number of the
-/// patch it lies on, so every change of a cavity carries its boundary along.
+/// Mesh<Dim>: a mesh while it is being adapted; Mesh<2, 3> is a surface, of triangles in space.
+/// Elements know their corners, vertices know their elements, and element neighbours are found by
+/// intersecting two such lists. Boundary facets and internal interfaces are not stored apart: an
+/// element's facet carries the number of the patch it lies on, so every change of a cavity carries
+/// its boundary along.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/instructions.hpp"
@@ -53,6 +55,7 @@ struct Curve {
   bool required = false;
   bool ridge = false;
   bool smooth = false;
+  bool crack_side = false;  ///< of a surface: another curve has the same ends
   std::uint32_t sheet = 0;  ///< its number in Mesh::surface, if smooth
 };
 
@@ -91,8 +94,17 @@ struct Surface;
 template <int Dim>
 struct Rounding;
 
+/// What facets of a mesh may lie on: patches; the edges of triangles in space lie on curves.
+template <int Dim, int Space>
+using FacetPatch = std::conditional_t<Dim == Space, Patch<Dim>, Curve>;
+
+/// What elements lie in: regions; triangles in space lie on the patches of their surface, of which
+/// entry 0 stands for none.
+template <int Dim, int Space>
+using ElementRegion = std::conditional_t<Dim == Space, Region, Patch<Space>>;
+
 /// A mesh while it is being adapted; see the top of this file.
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct Mesh {
   // ---- Elements; deleted if the first corner is none ----
   GrowingArray<Corners<Dim>> corners_of;                  // [element], positively oriented
@@ -105,21 +117,21 @@ struct Mesh {
   std::uint32_t epoch = 1;                 ///< changes are marked with it; a scan ends an epoch
 
   // ---- Vertices; deleted if there are no elements ----
-  GrowingArray<Site<Dim>> site_of;          // [vertex]
+  GrowingArray<Site<Space>> site_of;        // [vertex]
   GrowingArray<VertexKind> kind_of;         // [vertex]
   GrowingArray<std::uint32_t> entity_of;    // [vertex], its patch or curve, or 0
   GrowingArray<std::int32_t> reference_of;  // [vertex]
   GrowingArray<ElementId> host_of;          // [vertex], background element that contains it
   ListPool<ElementId> elements_of;          // [vertex], sorted
-  ListPool<CurveLink> links_of;             // [vertex], 3D only
+  ListPool<CurveLink> links_of;             // [vertex], tetrahedra only
 
   // ---- Geometry; entry 0 stands for none ----
-  std::vector<Patch<Dim>> patches;
+  std::vector<FacetPatch<Dim, Space>> patches;
   std::vector<Curve> curves;
-  std::vector<Region> regions;
-  std::shared_ptr<const Surface<Dim>> surface;  ///< null if no patch or curve is smooth
+  std::vector<ElementRegion<Dim, Space>> regions;
+  std::shared_ptr<const Surface<Space>> surface;  ///< null if no patch or curve is smooth
   /// Null unless a patch is flat, or a curve straight, only up to the precision of its coordinates.
-  std::shared_ptr<const Rounding<Dim>> rounding;
+  std::shared_ptr<const Rounding<Space>> rounding;
 
   std::size_t element_slots() const { return corners_of.size(); }
   std::size_t vertex_slots() const { return site_of.size(); }
@@ -127,8 +139,8 @@ struct Mesh {
   bool vertex_alive(VertexId vertex) const { return !elements_of.empty(vertex); }
 
   /// Pointers to the sites of an element's corners, for the quality functions.
-  std::array<const Site<Dim>*, Dim + 1> sites(const Corners<Dim>& corners) const {
-    std::array<const Site<Dim>*, Dim + 1> result;
+  std::array<const Site<Space>*, Dim + 1> sites(const Corners<Dim>& corners) const {
+    std::array<const Site<Space>*, Dim + 1> result;
     for (std::size_t i = 0; i < corners.size(); ++i) result[i] = &site_of[corners[i]];
     return result;
   }
@@ -163,43 +175,44 @@ inline constexpr std::uint32_t list_slack = Dim == 2 ? 2 : 10;
 inline constexpr std::uint32_t list_block = 64;
 
 /// Rebuilds elements_of from corners_of. Thread safety: one caller; runs on the executor.
-template <int Dim>
-void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);
+template <int Dim, int Space>
+void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim, Space>& mesh);
 
 /// Recomputes quality_of. Thread safety: one caller; runs on the executor.
-template <int Dim>
-void update_qualities(const runtime::Executor& executor, Mesh<Dim>& mesh);
+template <int Dim, int Space>
+void update_qualities(const runtime::Executor& executor, Mesh<Dim, Space>& mesh);
 
 /// Removes deleted entities and renumbers the others along a space-filling curve, so that
 /// neighbours in space are close in memory. Rebuilds elements_of: on entry lists may be out of
 /// date, but an empty list must still mean a deleted vertex; vertices from `unlisted` on count as
 /// existing. The result does not depend on the number of threads.
-template <int Dim>
-void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, VertexId unlisted = none);
+template <int Dim, int Space>
+void renumber(const runtime::Executor& executor, Mesh<Dim, Space>& mesh, VertexId unlisted = none);
 
 /// The same, also for the neighbours of its elements. Nothing may be deleted.
-template <int Dim>
-void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours);
+template <int Dim, int Space>
+void renumber(const runtime::Executor& executor, Mesh<Dim, Space>& mesh,
+              Neighbours<Dim>& neighbours);
 
 /// Marks the vertices of elements that changed after this epoch.
-template <int Dim>
+template <int Dim, int Space>
 runtime::UnsetVector<std::uint8_t> mark_changed(const runtime::Executor& executor,
-                                                const Mesh<Dim>& mesh, std::uint32_t after);
+                                                const Mesh<Dim, Space>& mesh, std::uint32_t after);
 
 /// Starts to bring a vertex's site into the cache. Always inlined: GCC 12 drops calls of functions
 /// that only prefetch.
-template <int Dim>
-[[gnu::always_inline]] inline void prefetch_site(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+[[gnu::always_inline]] inline void prefetch_site(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   const auto* const site = reinterpret_cast<const char*>(&mesh.site_of[vertex]);
   __builtin_prefetch(site);
-  __builtin_prefetch(site + sizeof(Site<Dim>) - 1);
+  __builtin_prefetch(site + sizeof(Site<Space>) - 1);
 }
 
 /// Starts to bring the ball of a vertex into the cache, in stages that build on each other: 2, its
 /// list of elements; 1, those elements; 0, the sites of their corners. Let some time pass between
 /// stages. Reads only.
-template <int Dim>
-void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
+template <int Dim, int Space>
+void prefetch_ball(const Mesh<Dim, Space>& mesh, VertexId vertex, int stage) {
   if (stage == 2) return mesh.elements_of.prefetch(vertex);
   for (const ElementId e : mesh.elements_of.of(vertex)) {
     if (stage == 1) {
@@ -214,9 +227,9 @@ void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
 
 /// The same for the elements around the edge a-b: 2, the lists of both ends; 1, the corners of the
 /// elements of the shorter one. There is no stage 0.
-template <int Dim>
-[[gnu::always_inline]] inline void prefetch_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b,
-                                                  int stage) {
+template <int Dim, int Space>
+[[gnu::always_inline]] inline void prefetch_shell(const Mesh<Dim, Space>& mesh, VertexId a,
+                                                  VertexId b, int stage) {
   if (stage == 2) {
     mesh.elements_of.prefetch(a);
     mesh.elements_of.prefetch(b);
@@ -230,8 +243,8 @@ template <int Dim>
 /// Visits the elements around the edge a-b in order: those in the shorter of the two lists that
 /// have the other vertex. They are collected branch-free first, because branches would be
 /// unpredictable.
-template <int Dim>
-void visit_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b, auto&& visit) {
+template <int Dim, int Space>
+void visit_shell(const Mesh<Dim, Space>& mesh, VertexId a, VertexId b, auto&& visit) {
   const auto of_a = mesh.elements_of.of(a), of_b = mesh.elements_of.of(b);
   const bool fewer = of_b.size() < of_a.size();
   const auto ball = fewer ? of_b : of_a;
@@ -250,17 +263,17 @@ void visit_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b, auto&& visit) {
 }
 
 /// The elements around the edge a-b, in order. Buffer is any vector-like type.
-template <int Dim, class Buffer>
-void shell_of(const Mesh<Dim>& mesh, VertexId a, VertexId b, Buffer& shell) {
+template <int Dim, int Space, class Buffer>
+void shell_of(const Mesh<Dim, Space>& mesh, VertexId a, VertexId b, Buffer& shell) {
   shell.clear();
   visit_shell(mesh, a, b, [&](ElementId element) { shell.push_back(element); });
 }
 
 /// Among the elements around a facet's first corner, the one besides `element` that has all
 /// corners, or none.
-template <int Dim>
-ElementId sharer_of(const Mesh<Dim>& mesh, std::span<const ElementId> around, ElementId element,
-                    const Facet<Dim>& corners) {
+template <int Dim, int Space>
+ElementId sharer_of(const Mesh<Dim, Space>& mesh, std::span<const ElementId> around,
+                    ElementId element, const Facet<Dim>& corners) {
   for (const ElementId other : around) {
     if (other == element) continue;
     bool all = true;
@@ -272,13 +285,14 @@ ElementId sharer_of(const Mesh<Dim>& mesh, std::span<const ElementId> around, El
 }
 
 /// The element on the other side of an element's facet, or none on the boundary.
-template <int Dim>
-ElementId neighbour(const Mesh<Dim>& mesh, ElementId element, int facet) {
+template <int Dim, int Space>
+ElementId neighbour(const Mesh<Dim, Space>& mesh, ElementId element, int facet) {
   const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[element], facet);
   return sharer_of<Dim>(mesh, mesh.elements_of.of(corners[0]), element, corners);
 }
 
 extern template struct Mesh<2>;
+extern template struct Mesh<2, 3>;
 extern template struct Mesh<3>;
 
 }  // namespace ductile::meshadapt

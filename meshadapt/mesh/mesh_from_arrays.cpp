@@ -147,7 +147,7 @@ AnyMesh mesh_from_arrays(const Executor& executor, const MeshArrays<Index>& arra
                      " vertices, found " + std::to_string(mesh.vertex_count()));
   const GivenCells<Index> elements{arrays.elements, arrays.element_reference};
   const GivenCells<Index> facets{arrays.facets, arrays.facet_reference};
-  if (mesh.dimension == 2) {
+  if (mesh.dimension == 2 || arrays.is_surface) {
     take_cells(executor, elements, mesh, mesh.triangles);
     take_cells(executor, facets, mesh, mesh.edges);
   } else {
@@ -160,6 +160,7 @@ AnyMesh mesh_from_arrays(const Executor& executor, const MeshArrays<Index>& arra
 
 std::size_t list_boundary(const Executor& executor, AnyMesh& mesh) {
   expect_coordinates(mesh);
+  if (is_surface(mesh)) return 0;  // whose rims need no listing
   return mesh.dimension == 2 ? list_boundary_in<2>(executor, mesh)
                              : list_boundary_in<3>(executor, mesh);
 }

@@ -19,15 +19,15 @@ using runtime::parallel_for;
 
 namespace {
 
-template <int Dim>
-Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh, auto&& is_alive) {
+template <int Dim, int Space>
+Box<Space> bounding_box(const Executor& executor, const Mesh<Dim, Space>& mesh, auto&& is_alive) {
   return runtime::parallel_reduce(
-      executor, mesh.vertex_slots(), Box<Dim>::empty(),
+      executor, mesh.vertex_slots(), Box<Space>::empty(),
       [&](std::size_t v) {
-        if (!is_alive(v)) return Box<Dim>::empty();
-        return Box<Dim>{mesh.site_of[v].position, mesh.site_of[v].position};
+        if (!is_alive(v)) return Box<Space>::empty();
+        return Box<Space>{mesh.site_of[v].position, mesh.site_of[v].position};
       },
-      [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
+      [](const Box<Space>& a, const Box<Space>& b) { return join(a, b); });
 }
 
 /// Keys with their ids in the low bits of a word, so that sorting words sorts ids by key, equal
@@ -86,8 +86,8 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
 }
 
 /// Renumbers corners. Returns the lowest corner of each element, none for deleted ones.
-template <int Dim>
-Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
+template <int Dim, int Space>
+Ids renumbered_lowest(const Executor& executor, Mesh<Dim, Space>& mesh, const Ids& new_vertex) {
   auto lowest_of = runtime::make_unset_vector<std::uint32_t>(executor, mesh.element_slots());
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     Corners<Dim>& corners = mesh.corners_of[e];
@@ -116,13 +116,13 @@ void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
 
 }  // namespace
 
-template <int Dim>
-Ids order_of_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId unlisted) {
+template <int Dim, int Space>
+Ids order_of_vertices(const Executor& executor, const Mesh<Dim, Space>& mesh, VertexId unlisted) {
   const auto is_alive = [&mesh, unlisted](std::size_t v) {
     return v >= unlisted || mesh.vertex_alive(static_cast<VertexId>(v));
   };
-  const Box<Dim> box = bounding_box(executor, mesh, is_alive);
-  return sorted_ids(executor, mesh.vertex_slots(), hilbert_bits<Dim>, is_alive,
+  const Box<Space> box = bounding_box(executor, mesh, is_alive);
+  return sorted_ids(executor, mesh.vertex_slots(), hilbert_bits<Space>, is_alive,
                     [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
 }
 
@@ -133,8 +133,8 @@ Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
   return place_of;
 }
 
-template <int Dim>
-Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex,
+template <int Dim, int Space>
+Ids renumber_corners(const Executor& executor, Mesh<Dim, Space>& mesh, const Ids& new_vertex,
                      std::size_t vertex_count) {
   // Allocated first, so that memory freed afterwards is contiguous.
   auto order = runtime::make_unset_vector<std::uint32_t>(executor, mesh.element_slots());
@@ -144,8 +144,10 @@ Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_v
 }
 
 template Ids order_of_vertices(const Executor&, const Mesh<2>&, VertexId);
+template Ids order_of_vertices(const Executor&, const Mesh<2, 3>&, VertexId);
 template Ids order_of_vertices(const Executor&, const Mesh<3>&, VertexId);
 template Ids renumber_corners(const Executor&, Mesh<2>&, const Ids&, std::size_t);
+template Ids renumber_corners(const Executor&, Mesh<2, 3>&, const Ids&, std::size_t);
 template Ids renumber_corners(const Executor&, Mesh<3>&, const Ids&, std::size_t);
 
 }  // namespace ductile::meshadapt

@@ -17,16 +17,17 @@ namespace ductile::meshadapt {
 using Ids = runtime::UnsetVector<std::uint32_t>;
 
 /// Vertices that have elements in their lists, or a number from `unlisted` on.
-template <int Dim>
-Ids order_of_vertices(const runtime::Executor& executor, const Mesh<Dim>& mesh, VertexId unlisted);
+template <int Dim, int Space>
+Ids order_of_vertices(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                      VertexId unlisted);
 
 /// The position of each old number, below `count`, in the order; uninitialised for missing ones.
 Ids places_in(const runtime::Executor& executor, const Ids& order, std::size_t count);
 
 /// Renumbers the corners of elements, to numbers below `vertex_count`, and orders the elements by
 /// their lowest corners, stably.
-template <int Dim>
-Ids renumber_corners(const runtime::Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex,
-                     std::size_t vertex_count);
+template <int Dim, int Space>
+Ids renumber_corners(const runtime::Executor& executor, Mesh<Dim, Space>& mesh,
+                     const Ids& new_vertex, std::size_t vertex_count);
 
 }  // namespace ductile::meshadapt

@@ -105,18 +105,18 @@ void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices
   });
 }
 
-template <int Dim>
-void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
-  Permutation permute(executor, order, sizeof(Metric<Dim>));
-  permute.members(mesh.site_of, &Site<Dim>::metric);
-  permute.members(mesh.site_of, &Site<Dim>::position, &Site<Dim>::scale);
+template <int Dim, int Space>
+void permute_vertices(const Executor& executor, Mesh<Dim, Space>& mesh, const Ids& order) {
+  Permutation permute(executor, order, sizeof(Metric<Space>));
+  permute.members(mesh.site_of, &Site<Space>::metric);
+  permute.members(mesh.site_of, &Site<Space>::position, &Site<Space>::scale);
   mesh.site_of.resize(order.size());
   permute(mesh.entity_of, mesh.reference_of, mesh.host_of, mesh.kind_of);
 }
 
 /// Renumbers vertices; returns their new numbers.
-template <int Dim>
-Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, Ids order) {
+template <int Dim, int Space>
+Ids renumber_vertices(const Executor& executor, Mesh<Dim, Space>& mesh, Ids order) {
   Ids new_vertex = places_in(executor, order, mesh.vertex_slots());
   if constexpr (Dim == 3) renumber_links(executor, mesh, order, new_vertex);
   permute_vertices(executor, mesh, order);
@@ -124,8 +124,8 @@ Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, Ids order) {
 }
 
 /// Renumbers elements and, if given, their neighbours.
-template <int Dim>
-void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& order,
+template <int Dim, int Space>
+void renumber_elements(const Executor& executor, Mesh<Dim, Space>& mesh, const Ids& order,
                        Neighbours<Dim>* neighbours) {
   Permutation permute(executor, order, 2 * sizeof(VertexId));
   permute.by_pairs(mesh.corners_of);
@@ -141,8 +141,8 @@ void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& ord
   });
 }
 
-template <int Dim>
-void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Ids order_of_vertices,
+template <int Dim, int Space>
+void renumber_all(const Executor& executor, Mesh<Dim, Space>& mesh, Ids order_of_vertices,
                   Neighbours<Dim>* neighbours) {
   const auto ordered = [&] {
     const Ids new_vertex = renumber_vertices(executor, mesh, std::move(order_of_vertices));
@@ -159,8 +159,8 @@ bool keeps_all(const Executor& executor, const Ids& order, std::size_t count) {
 }
 
 /// Are elements in the order of their lowest corners, and none deleted?
-template <int Dim>
-bool elements_are_in_order(const Executor& executor, const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+bool elements_are_in_order(const Executor& executor, const Mesh<Dim, Space>& mesh) {
   const auto lowest_of = [&](std::size_t element) {
     return *std::min_element(mesh.corners_of[element].begin(), mesh.corners_of[element].end());
   };
@@ -172,23 +172,25 @@ bool elements_are_in_order(const Executor& executor, const Mesh<Dim>& mesh) {
 
 }  // namespace
 
-template <int Dim>
-void renumber(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted) {
-  renumber_all<Dim>(executor, mesh, order_of_vertices(executor, mesh, unlisted), nullptr);
+template <int Dim, int Space>
+void renumber(const Executor& executor, Mesh<Dim, Space>& mesh, VertexId unlisted) {
+  renumber_all<Dim, Space>(executor, mesh, order_of_vertices(executor, mesh, unlisted), nullptr);
 }
 
-template <int Dim>
-void renumber(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours) {
+template <int Dim, int Space>
+void renumber(const Executor& executor, Mesh<Dim, Space>& mesh, Neighbours<Dim>& neighbours) {
   Ids order = order_of_vertices(executor, mesh, none);
   // True if the mesh has been adapted before.
   if (keeps_all(executor, order, mesh.vertex_slots()) && elements_are_in_order(executor, mesh))
     return;
-  renumber_all<Dim>(executor, mesh, std::move(order), &neighbours);
+  renumber_all(executor, mesh, std::move(order), &neighbours);
 }
 
 template void renumber(const Executor&, Mesh<2>&, VertexId);
+template void renumber(const Executor&, Mesh<2, 3>&, VertexId);
 template void renumber(const Executor&, Mesh<3>&, VertexId);
 template void renumber(const Executor&, Mesh<2>&, Neighbours<2>&);
+template void renumber(const Executor&, Mesh<2, 3>&, Neighbours<2>&);
 template void renumber(const Executor&, Mesh<3>&, Neighbours<3>&);
 
 }  // namespace ductile::meshadapt

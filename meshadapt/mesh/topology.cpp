@@ -115,8 +115,7 @@ template <int Dim>
 void count(const AdjacentMesh& mesh, Regions region_of, std::vector<RegionTopology>& regions) {
   const Executor& executor = mesh.executor();
   Parts<Dim>(executor, mesh.mesh(), region_of).count(regions);
-  count_boundary<Dim>({executor, sides_of<Dim>(executor, mesh.adjacency<Dim>(), region_of)},
-                      regions);
+  count_boundary<Dim>({executor, sides_in<Dim>(mesh, region_of)}, regions);
 }
 
 /// Describes the number that differs.
@@ -160,7 +159,8 @@ std::vector<RegionTopology> topology_of(const AdjacentMesh& mesh) {
   const Executor& executor = mesh.executor();
   std::vector<RegionTopology> all(1);
   count<Dim>(mesh, {}, all);
-  const auto& reference_of = elements_in<Dim>(mesh.mesh()).reference;
+  const auto& reference_of = is_surface(mesh.mesh()) ? mesh.mesh().triangles.reference
+                                                     : elements_in<Dim>(mesh.mesh()).reference;
   const std::vector<std::int32_t> references = references_of(reference_of);
   if (references.size() < 2) return all;
   auto region_of = runtime::make_unset_vector<std::uint32_t>(executor, reference_of.size());

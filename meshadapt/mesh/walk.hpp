@@ -11,32 +11,38 @@
 namespace ductile::meshadapt {
 
 /// Positions and corners of the elements of a mesh.
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct Simplices {
-  std::span<const Corners<Dim>> corners_of;  // [element]
-  std::span<const Vector<Dim>> position_of;  // [vertex]
+  std::span<const Corners<Dim>> corners_of;    // [element]
+  std::span<const Vector<Space>> position_of;  // [vertex]
 
-  std::array<Vector<Dim>, Dim + 1> points(ElementId element) const {
-    std::array<Vector<Dim>, Dim + 1> result;
+  std::array<Vector<Space>, Dim + 1> points(ElementId element) const {
+    std::array<Vector<Space>, Dim + 1> result;
     for (std::size_t i = 0; i <= Dim; ++i) result[i] = position_of[corners_of[element][i]];
     return result;
   }
 };
 
 /// The data that a walk uses.
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct Walkable {
-  Simplices<Dim> elements;
+  Simplices<Dim, Space> elements;
   std::span<const std::array<ElementId, Dim + 1>> neighbour_of;  // [element][facet]
 };
 
 template <int Dim>
 using Weights = std::array<double, Dim + 1>;  // barycentric, of an element's corners
 
-template <int Dim>
-Weights<Dim> barycentric(const std::array<Vector<Dim>, Dim + 1>& corner, const Vector<Dim>& point) {
-  const Vector<Dim> u = corner[1] - corner[0], v = corner[2] - corner[0], p = point - corner[0];
-  if constexpr (Dim == 2) {
+template <int Dim, int Space>
+Weights<Dim> barycentric(const std::array<Vector<Space>, Dim + 1>& corner,
+                         const Vector<Space>& point) {
+  const Vector<Space> u = corner[1] - corner[0], v = corner[2] - corner[0], p = point - corner[0];
+  if constexpr (Dim < Space) {  // of the point's projection to the plane of the triangle
+    const Vector<3> normal = cross(u, v);
+    const double scale = 1 / dot(normal, normal);
+    const double at_u = scale * dot(cross(p, v), normal), at_v = scale * dot(cross(u, p), normal);
+    return {1 - at_u - at_v, at_u, at_v};
+  } else if constexpr (Dim == 2) {
     const double scale = 1 / (u[0] * v[1] - u[1] * v[0]);
     const double at_u = scale * (p[0] * v[1] - p[1] * v[0]);
     const double at_v = scale * (u[0] * p[1] - u[1] * p[0]);
@@ -60,10 +66,14 @@ struct WalkEnd {
   bool inside;  ///< false: the walk met the boundary or took too long
 };
 
-/// Steps across the facet that the point is farthest beyond, until it is beyond none.
-template <int Dim>
-WalkEnd<Dim> walk(const Walkable<Dim>& mesh, const Vector<Dim>& point, ElementId near) {
-  constexpr int longest_walk = 2000;  // longer walks circle, or go around a hole
+/// Steps across the facet that the point is farthest beyond, until it is beyond none. Over a
+/// surface that is also over where the point is beyond both of two triangles, outside of their
+/// edge; there it ends, at one of them.
+template <int Dim, int Space = Dim>
+WalkEnd<Dim> walk(const Walkable<Dim, Space>& mesh, const Vector<Space>& point, ElementId near) {
+  constexpr int longest_walk =
+      Dim < Space ? 200 : 2000;  // longer walks circle, or go around a hole
+  [[maybe_unused]] ElementId before = none;
   WalkEnd<Dim> at{near, {}, false};
   for (int step = 0; step < longest_walk; ++step) {
     if constexpr (Dim == 3)  // hides latency: in large meshes the next step is known late
@@ -85,6 +95,10 @@ WalkEnd<Dim> walk(const Walkable<Dim>& mesh, const Vector<Dim>& point, ElementId
         next = mesh.neighbour_of[at.element][i];
       }
     if (next == none) break;
+    if constexpr (Dim < Space) {
+      if (next == before) break;
+      before = at.element;
+    }
     at.element = next;
   }
   return at;

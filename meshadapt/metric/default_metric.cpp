@@ -101,7 +101,7 @@ void expect_sizes(const AnyMesh& mesh, const std::vector<double>& size_of) {
 std::vector<double> sizes_of(const AnyMesh& mesh) {
   expect_coordinates(mesh);
   LogLengths logs(mesh.vertex_count());
-  mesh.dimension == 2 ? add_elements<2>(logs, mesh) : add_elements<3>(logs, mesh);
+  element_dimension(mesh) == 2 ? add_elements<2>(logs, mesh) : add_elements<3>(logs, mesh);
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < logs.sum.size(); ++v) {
     sum += logs.sum[v];
@@ -115,7 +115,7 @@ std::vector<double> sizes_of(const AnyMesh& mesh) {
   return size_of;
 }
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class DefaultMetric {
  public:
   DefaultMetric(const runtime::Executor& executor, const AnyMesh& mesh)
@@ -127,13 +127,13 @@ class DefaultMetric {
         volume_of_(log_of_.size()) {
     runtime::parallel_for(executor_, log_of_.size(), [&](std::size_t e) {
       const auto corner = points(e);
-      volume_of_[e] = std::abs(plain_determinant(corner));
+      volume_of_[e] = measure_of(corner);
       if (volume_of_[e] > 0) log_of_[e] = logarithm(metric_of_element<Dim>(corner));
     });
   }
 
   AnyField field() const {
-    std::vector<Metric<Dim>> metric_of(mesh_.vertex_count());
+    std::vector<Metric<Space>> metric_of(mesh_.vertex_count());
     runtime::parallel_for(executor_, metric_of.size(), [&](std::size_t v) {
       metric_of[v] = metric_at(static_cast<VertexId>(v));
     });
@@ -141,32 +141,40 @@ class DefaultMetric {
   }
 
  private:
-  std::array<Vector<Dim>, Dim + 1> points(std::size_t element) const {
-    std::array<Vector<Dim>, Dim + 1> corner;
+  /// Volume times 2 or 6, rounding and all.
+  static double measure_of(const std::array<Vector<Space>, Dim + 1>& corner) {
+    if constexpr (Dim < Space)
+      return norm(facet_normal(corner));
+    else
+      return std::abs(plain_determinant(corner));
+  }
+
+  std::array<Vector<Space>, Dim + 1> points(std::size_t element) const {
+    std::array<Vector<Space>, Dim + 1> corner;
     for (std::size_t i = 0; i <= Dim; ++i)
-      corner[i] = position_in<Dim>(mesh_, elements_in<Dim>(mesh_).vertices[element][i]);
+      corner[i] = position_in<Space>(mesh_, elements_in<Dim>(mesh_).vertices[element][i]);
     return corner;
   }
 
-  Metric<Dim> metric_at(VertexId v) const {
+  Metric<Space> metric_at(VertexId v) const {
     double volume = 0;
     for (const ElementId e : lists_.elements_of(v)) volume += volume_of_[e];
-    if (!(volume > 0)) return isotropic<Dim>(size_of_[v]);
-    Metric<Dim> mean;
+    if (!(volume > 0)) return isotropic<Space>(size_of_[v]);
+    Metric<Space> mean;
     for (const ElementId e : lists_.elements_of(v))
       if (volume_of_[e] > 0) mean += volume_of_[e] / volume * log_of_[e];
-    const Metric<Dim> shape = exponential(without_little_stretch(mean));
+    const Metric<Space> shape = exponential(without_little_stretch(mean));
     return std::exp(-2 * mean_log_length(shape, v)) * shape;
   }
 
   /// The mean logarithm of the lengths of a vertex's edges, counted per element.
-  double mean_log_length(const Metric<Dim>& metric, VertexId v) const {
+  double mean_log_length(const Metric<Space>& metric, VertexId v) const {
     double sum = 0;
     int count = 0;
     for (const ElementId e : lists_.elements_of(v))
       for (const VertexId w : elements_in<Dim>(mesh_).vertices[e]) {
         const double square =
-            squared_length(metric, position_in<Dim>(mesh_, w) - position_in<Dim>(mesh_, v));
+            squared_length(metric, position_in<Space>(mesh_, w) - position_in<Space>(mesh_, v));
         if (!(square > 0)) continue;  // v itself, or where it is but for rounding
         sum += std::log(square) / 2;
         ++count;
@@ -178,8 +186,8 @@ class DefaultMetric {
   std::vector<double> size_of_;  // [vertex]
   const AnyMesh& mesh_;
   VertexElements lists_;
-  std::vector<Metric<Dim>> log_of_;  // [element], unset where the element is flat
-  std::vector<double> volume_of_;    // [element], times 2 or 6
+  std::vector<Metric<Space>> log_of_;  // [element], unset where the element is flat
+  std::vector<double> volume_of_;      // [element], times 2 or 6
 };
 
 template <int Dim>
@@ -215,6 +223,7 @@ AnyField coarsest_metric(const AnyMesh& mesh, double largest_size) {
 }
 
 AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh) {
+  if (is_surface(mesh)) return DefaultMetric<2, 3>(executor, mesh).field();
   return mesh.dimension == 2 ? DefaultMetric<2>(executor, mesh).field()
                              : DefaultMetric<3>(executor, mesh).field();
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/first_bad.hpp"
+#include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/arrays.hpp"
@@ -34,35 +35,40 @@ std::string with_commas(double number) {
 
 }  // namespace
 
-template <int Dim>
-double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                            const std::vector<Metric<Dim>>& metric_of) {
-  auto density_of = runtime::make_vector<double>(executor, metric_of.size());
-  runtime::parallel_for(executor, metric_of.size(),
-                        [&](std::size_t v) { density_of[v] = log_density(metric_of[v]); });
+template <int Dim, int Space>
+double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                            const std::vector<Metric<Space>>& metric_of) {
+  std::vector<double> density_of;
+  if constexpr (Dim == Space) {
+    density_of = runtime::make_vector<double>(executor, metric_of.size());
+    runtime::parallel_for(executor, metric_of.size(),
+                          [&](std::size_t v) { density_of[v] = log_density(metric_of[v]); });
+  }
   const auto of_element = [&](std::size_t e) {
-    CornerPlaces<Dim> corner;
+    CornerPlaces<Dim, Space> corner;
     LogDensities<Dim> densities;
-    for (std::size_t c = 0; c <= Dim; ++c) {
-      const VertexId v = mesh.corners_of[e][c];
-      corner[c] = mesh.site_of[v].position;
-      densities[c] = density_of[v];
-    }
+    const Corners<Dim>& corners = mesh.corners_of[e];
+    for (std::size_t c = 0; c <= Dim; ++c) corner[c] = mesh.site_of[corners[c]].position;
+    for (std::size_t c = 0; c <= Dim; ++c)
+      if constexpr (Dim == Space)
+        densities[c] = density_of[corners[c]];
+      else
+        densities[c] = log_density_in_plane(metric_of[corners[c]], unit(facet_normal(corner)));
     return complexity_of_element<Dim>(densities, corner);
   };
   return runtime::parallel_reduce(executor, mesh.element_slots(), 0.0, of_element, std::plus<>());
 }
 
-template <int Dim>
-double share_of_steep(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+double share_of_steep(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh) {
   struct Complexity {
     double all = 0, of_steep = 0;
   };
   const auto of_element = [&](std::size_t e) {
-    CornerPlaces<Dim> corner;
+    CornerPlaces<Dim, Space> corner;
     LogDensities<Dim> densities;
     for (std::size_t i = 0; i <= Dim; ++i) {
-      const Site<Dim>& site = mesh.site_of[mesh.corners_of[e][i]];
+      const Site<Space>& site = mesh.site_of[mesh.corners_of[e][i]];
       corner[i] = site.position;
       densities[i] = 0.5 * Dim * std::log(site.scale);
     }
@@ -87,18 +93,18 @@ double least_length(const Metric<Dim>& a, const Metric<Dim>& b, const Vector<Dim
 
 /// The metric length of the edge in 2D, the area of the triangle in 3D, by the smallest of its
 /// corners' metrics, in unit edges or unit triangles.
-template <int Dim>
-double unit_facets(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metric_of,
+template <int Dim, int Space>
+double unit_facets(const Mesh<Dim, Space>& mesh, const std::vector<Metric<Space>>& metric_of,
                    const Facet<Dim>& facet) {
   const auto at = [&](std::size_t i) { return mesh.site_of[facet[i]].position; };
-  const Vector<Dim> u = at(1) - at(0);
+  const Vector<Space> u = at(1) - at(0);
   if constexpr (Dim == 2) {
     return least_length(metric_of[facet[0]], metric_of[facet[1]], u);
   } else {
-    const Vector<Dim> v = at(2) - at(0);
+    const Vector<Space> v = at(2) - at(0);
     double least = std::numeric_limits<double>::infinity();
     for (const VertexId corner : facet) {
-      const Metric<Dim>& metric = metric_of[corner];
+      const Metric<Space>& metric = metric_of[corner];
       const double uu = squared_length(metric, u), vv = squared_length(metric, v),
                    uv = (squared_length(metric, u + v) - uu - vv) / 2;
       least = std::min(least, std::sqrt(std::max(uu * vv - uv * uv, 0.0)) / 2);
@@ -107,8 +113,8 @@ double unit_facets(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metric
   }
 }
 
-template <int Dim>
-bool requires_something(const Mesh<Dim>& mesh) {
+template <int Dim, int Space>
+bool requires_something(const Mesh<Dim, Space>& mesh) {
   const auto required = [](const auto& part) { return part.required; };
   return std::any_of(mesh.patches.begin(), mesh.patches.end(), required) ||
          std::any_of(mesh.regions.begin(), mesh.regions.end(), required);
@@ -116,9 +122,9 @@ bool requires_something(const Mesh<Dim>& mesh) {
 
 }  // namespace
 
-template <int Dim>
-double least_elements(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                      const std::vector<Metric<Dim>>& metric_of) {
+template <int Dim, int Space>
+double least_elements(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                      const std::vector<Metric<Space>>& metric_of) {
   if (requires_something(mesh)) return 0;
   struct Least {
     double edge = 0, facets = 0;
@@ -134,7 +140,7 @@ double least_elements(const runtime::Executor& executor, const Mesh<Dim>& mesh,
     for (std::size_t i = 0; i <= Dim; ++i)
       if (mesh.patches_of[e][i] != 0)
         least.facets +=
-            unit_facets<Dim>(mesh, metric_of, facet_of<Dim>(corners, static_cast<int>(i)));
+            unit_facets<Dim, Space>(mesh, metric_of, facet_of<Dim>(corners, static_cast<int>(i)));
     return least;
   };
   const Least all = runtime::parallel_reduce(
@@ -169,15 +175,20 @@ void expect_room(const std::string& name, int dimension, double elements, std::s
 
 template double complexity_of_demand(const runtime::Executor&, const Mesh<2>&,
                                      const std::vector<Metric<2>>&);
+template double complexity_of_demand(const runtime::Executor&, const Mesh<2, 3>&,
+                                     const std::vector<Metric<3>>&);
 template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
                                      const std::vector<Metric<3>>&);
 
 template double least_elements(const runtime::Executor&, const Mesh<2>&,
                                const std::vector<Metric<2>>&);
+template double least_elements(const runtime::Executor&, const Mesh<2, 3>&,
+                               const std::vector<Metric<3>>&);
 template double least_elements(const runtime::Executor&, const Mesh<3>&,
                                const std::vector<Metric<3>>&);
 
 template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
+template double share_of_steep(const runtime::Executor&, const Mesh<2, 3>&);
 template double share_of_steep(const runtime::Executor&, const Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -14,21 +14,21 @@ namespace ductile::meshadapt {
 
 /// The integral over the mesh of sqrt(det metric) as it is interpolated, see interpolation.hpp.
 /// Thread safety: one caller; runs on the executor.
-template <int Dim>
-double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                            const std::vector<Metric<Dim>>& metric_of);
+template <int Dim, int Space>
+double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                            const std::vector<Metric<Space>>& metric_of);
 
 /// How much of what the metrics of a mesh ask for lies in elements that are much too coarse for how
 /// sizes change (see is_steep). All elements must be there. Thread safety: as above.
-template <int Dim>
-double share_of_steep(const runtime::Executor& executor, const Mesh<Dim>& mesh);
+template <int Dim, int Space>
+double share_of_steep(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh);
 
 /// A lower bound on the elements of a mesh with unit edges, which the integral above misses where
 /// the mesh is thin: elements cover the longest edge, and have the boundary's facets. 0 if
 /// something is required, which may stay as coarse as it is. Thread safety: as above.
-template <int Dim>
-double least_elements(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                      const std::vector<Metric<Dim>>& metric_of);
+template <int Dim, int Space>
+double least_elements(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                      const std::vector<Metric<Space>>& metric_of);
 
 /// Throws InputError if there would certainly be more elements than 32 bits count.
 void expect_countable(const std::string& name, int dimension, double elements);
@@ -39,13 +39,18 @@ void expect_room(const std::string& name, int dimension, double elements, std::s
 
 extern template double complexity_of_demand(const runtime::Executor&, const Mesh<2>&,
                                             const std::vector<Metric<2>>&);
+extern template double complexity_of_demand(const runtime::Executor&, const Mesh<2, 3>&,
+                                            const std::vector<Metric<3>>&);
 extern template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
                                             const std::vector<Metric<3>>&);
 extern template double least_elements(const runtime::Executor&, const Mesh<2>&,
                                       const std::vector<Metric<2>>&);
+extern template double least_elements(const runtime::Executor&, const Mesh<2, 3>&,
+                                      const std::vector<Metric<3>>&);
 extern template double least_elements(const runtime::Executor&, const Mesh<3>&,
                                       const std::vector<Metric<3>>&);
 extern template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
+extern template double share_of_steep(const runtime::Executor&, const Mesh<2, 3>&);
 extern template double share_of_steep(const runtime::Executor&, const Mesh<3>&);
 
 }  // namespace ductile::meshadapt

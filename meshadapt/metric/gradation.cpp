@@ -26,8 +26,8 @@ namespace {
 
 // ---- What gradation needs of a mesh, of either kind ----
 
-template <int Dim>
-const Vector<Dim>& place_of(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+const Vector<Space>& place_of(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.site_of[vertex].position;
 }
 template <int Dim>
@@ -182,11 +182,11 @@ void expect_gradation(double factor, const char* option) {
   if (!(factor <= 0 || (factor >= 1 && std::isfinite(factor)))) refuse_gradation(factor, option);
 }
 
-template <int Dim>
-GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
-                                const Mesh<Dim>& mesh, const GradationOptions& options) {
+template <int Dim, int Space>
+GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Space>>& metric_of,
+                                const Mesh<Dim, Space>& mesh, const GradationOptions& options) {
   expect_gradable(metric_of.size(), mesh.vertex_slots(), options);
-  return Gradation<Dim, Mesh<Dim>>(executor, metric_of, mesh, options).run();
+  return Gradation<Space, Mesh<Dim, Space>>(executor, metric_of, mesh, options).run();
 }
 
 template <int Dim>
@@ -203,6 +203,8 @@ template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>
                                          const FixedMesh<3>&, const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&, const Mesh<2>&,
                                          const GradationOptions&);
+template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&,
+                                         const Mesh<2, 3>&, const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&, const Mesh<3>&,
                                          const GradationOptions&);
 

@@ -52,8 +52,11 @@ double divided_difference_of_antiderivative(std::size_t n, std::span<const doubl
 }
 
 template <int Dim>
-double volume_of(const CornerPlaces<Dim>& corner) {
+double volume_of(const std::array<Vector<Dim>, Dim + 1>& corner) {
   return certain_determinant<Dim>(corner) / factorial(Dim);
+}
+double volume_of(const std::array<Vector<3>, 3>& corner) {
+  return certain_area(corner[0], corner[1], corner[2]) / 2;
 }
 
 /// If sizes grow exponentially.
@@ -79,25 +82,28 @@ double complexity_of_linear(LogDensities<Dim> log_densities, double volume) {
 
 }  // namespace
 
-template <int Dim>
-bool is_steep(const LogDensities<Dim>& log_densities, const CornerPlaces<Dim>& corner) {
+template <int Dim, int Space>
+bool is_steep(const LogDensities<Dim>& log_densities,
+              const std::array<Vector<Space>, Dim + 1>& corner) {
   constexpr double many = 30;  // about 70 triangles, 330 tetrahedra
   return differ_much(log_densities) &&
-         complexity_of_exponential<Dim>(log_densities, volume_of<Dim>(corner)) > many;
+         complexity_of_exponential<Dim>(log_densities, volume_of(corner)) > many;
 }
 
-template <int Dim>
+template <int Dim, int Space>
 double complexity_of_element(const LogDensities<Dim>& log_densities,
-                             const CornerPlaces<Dim>& corner) {
-  const double volume = volume_of<Dim>(corner);
+                             const std::array<Vector<Space>, Dim + 1>& corner) {
+  const double volume = volume_of(corner);
   return is_steep<Dim>(log_densities, corner)
              ? complexity_of_linear<Dim>(log_densities, volume)
              : complexity_of_exponential<Dim>(log_densities, volume);
 }
 
 template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2>&);
+template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2, 3>&);
 template bool is_steep<3>(const LogDensities<3>&, const CornerPlaces<3>&);
 template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2>&);
+template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2, 3>&);
 template double complexity_of_element<3>(const LogDensities<3>&, const CornerPlaces<3>&);
 
 }  // namespace ductile::meshadapt

@@ -16,8 +16,8 @@
 namespace ductile::meshadapt {
 
 /// The logarithms of the metrics at an element's corners.
-template <int Dim>
-using CornerLogs = std::array<const Metric<Dim>*, Dim + 1>;
+template <int Dim, int Space = Dim>
+using CornerLogs = std::array<const Metric<Space>*, Dim + 1>;
 
 /// The logarithm of sqrt(det metric) at each corner.
 template <int Dim>
@@ -31,9 +31,15 @@ double log_density_of_log(const Metric<Dim>& log_metric) {
   return trace / 2;
 }
 
+/// The logarithm of sqrt(det metric) in the plane of a triangle with this normal, of unit length.
+inline double log_density_in_plane(const Metric<3>& metric, const Vector<3>& normal) {
+  const Metric<3> dual = inverse(metric);
+  return std::log(determinant(metric) * squared_length(dual, normal)) / 2;
+}
+
 /// The positions of an element's corners.
-template <int Dim>
-using CornerPlaces = std::array<Vector<Dim>, Dim + 1>;
+template <int Dim, int Space = Dim>
+using CornerPlaces = std::array<Vector<Space>, Dim + 1>;
 
 /// Does the product of the sizes differ by a factor of more than 100 between the corners?
 template <std::size_t Corners>
@@ -46,55 +52,59 @@ bool differ_much(const std::array<double, Corners>& log_densities) {
 /// And would sizes that grow exponentially between them ask for many elements in this one? Beside a
 /// layer of 1e-5, in elements of 0.17, they ask for 2,000 across where sizes that grow linearly to
 /// 0.03 ask for 40 (docs/decisions/0033). A mesh that shows how sizes change has no such elements.
-template <int Dim>
-bool is_steep(const LogDensities<Dim>& log_densities, const CornerPlaces<Dim>& corner);
+template <int Dim, int Space>
+bool is_steep(const LogDensities<Dim>& log_densities,
+              const std::array<Vector<Space>, Dim + 1>& corner);
 
 /// The integral of sqrt(det metric) over an element. Thread safety: any thread.
-template <int Dim>
+template <int Dim, int Space>
 double complexity_of_element(const LogDensities<Dim>& log_densities,
-                             const CornerPlaces<Dim>& corner);
+                             const std::array<Vector<Space>, Dim + 1>& corner);
 
 /// The directions of the log-Euclidean mean, with sizes that are the means of the corners' sizes,
 /// the shortest with the shortest: from linear sizes alone, directions that differ by a little
 /// would blur what is thin.
-template <int Dim>
-Metric<Dim> with_linear_sizes(const Metric<Dim>& log_mean, const CornerLogs<Dim>& logs,
-                              const std::array<double, Dim + 1>& weight) {
-  std::array<double, Dim> sizes{};
+template <int Dim, int Space = Dim>
+Metric<Space> with_linear_sizes(const Metric<Space>& log_mean, const CornerLogs<Dim, Space>& logs,
+                                const std::array<double, Dim + 1>& weight) {
+  std::array<double, Space> sizes{};
   for (std::size_t i = 0; i <= Dim; ++i) {
-    std::array<double, Dim> values = principal_axes(*logs[i]).value;
+    std::array<double, Space> values = principal_axes(*logs[i]).value;
     std::sort(values.begin(), values.end());
-    for (std::size_t k = 0; k < Dim; ++k) sizes[k] += weight[i] * std::exp(-values[k] / 2);
+    for (std::size_t k = 0; k < Space; ++k) sizes[k] += weight[i] * std::exp(-values[k] / 2);
   }
-  PrincipalAxes<Dim> axes = principal_axes(log_mean);
-  std::array<std::size_t, Dim> rising;
+  PrincipalAxes<Space> axes = principal_axes(log_mean);
+  std::array<std::size_t, Space> rising;
   std::iota(rising.begin(), rising.end(), std::size_t{0});
   std::sort(rising.begin(), rising.end(),
             [&](std::size_t a, std::size_t b) { return axes.value[a] < axes.value[b]; });
-  for (std::size_t k = 0; k < Dim; ++k) axes.value[rising[k]] = 1 / (sizes[k] * sizes[k]);
+  for (std::size_t k = 0; k < Space; ++k) axes.value[rising[k]] = 1 / (sizes[k] * sizes[k]);
   return compose(axes);
 }
 
 /// The metric at a point of an element, whose barycentric weights add up to 1. Log-Euclidean means
 /// are those of Arsigny, Fillard, Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007. `places`
 /// gives the CornerPlaces when it is called, which is seldom. Thread safety: any thread.
-template <int Dim>
-Metric<Dim> interpolated(const CornerLogs<Dim>& logs, const std::array<double, Dim + 1>& weight,
-                         const auto& places) {
-  Metric<Dim> log_mean;
+template <int Dim, int Space = Dim>
+Metric<Space> interpolated(const CornerLogs<Dim, Space>& logs,
+                           const std::array<double, Dim + 1>& weight, const auto& places) {
+  Metric<Space> log_mean;
   LogDensities<Dim> densities;
   for (std::size_t i = 0; i <= Dim; ++i) {
     log_mean += weight[i] * *logs[i];
     densities[i] = log_density_of_log(*logs[i]);
+    if constexpr (Dim < Space) densities[i] *= static_cast<double>(Dim) / Space;
   }
   if (differ_much(densities) && is_steep<Dim>(densities, places()))
-    return with_linear_sizes<Dim>(log_mean, logs, weight);
+    return with_linear_sizes<Dim, Space>(log_mean, logs, weight);
   return exponential(log_mean);
 }
 
 extern template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2>&);
+extern template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2, 3>&);
 extern template bool is_steep<3>(const LogDensities<3>&, const CornerPlaces<3>&);
 extern template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2>&);
+extern template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2, 3>&);
 extern template double complexity_of_element<3>(const LogDensities<3>&, const CornerPlaces<3>&);
 
 }  // namespace ductile::meshadapt

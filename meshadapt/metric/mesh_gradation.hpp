@@ -11,13 +11,15 @@
 namespace ductile::meshadapt {
 
 /// As on a FixedMesh; whether they are metrics is not checked.
-template <int Dim>
+template <int Dim, int Space>
 GradationReport limit_gradation(const runtime::Executor& executor,
-                                std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
+                                std::vector<Metric<Space>>& metric_of, const Mesh<Dim, Space>& mesh,
                                 const GradationOptions& options = {});
 
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
                                                 const Mesh<2>&, const GradationOptions&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
+                                                const Mesh<2, 3>&, const GradationOptions&);
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
                                                 const Mesh<3>&, const GradationOptions&);
 

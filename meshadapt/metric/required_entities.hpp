@@ -25,10 +25,10 @@ using EntityCorners = std::array<VertexId, Dim + 1>;
 /// The required elements around a vertex, the required facets that no such element has, and the
 /// edges along required curves that neither has; of required vertices with none of these, the edges
 /// to others such. Each once, in an order that depends on nothing but the mesh.
-template <int Dim>
+template <int Dim, int Space = Dim>
 class RequiredAround {
  public:
-  explicit RequiredAround(const Mesh<Dim>& mesh) : mesh_(mesh) {}
+  explicit RequiredAround(const Mesh<Dim, Space>& mesh) : mesh_(mesh) {}
 
   std::span<const EntityCorners<Dim>> of(VertexId v) {
     found_.clear();
@@ -45,12 +45,12 @@ class RequiredAround {
   }
 
   /// Edges between required vertices that the metric at v would have longer.
-  std::span<const EntityCorners<Dim>> short_edges(VertexId v, const Metric<Dim>& metric) {
+  std::span<const EntityCorners<Dim>> short_edges(VertexId v, const Metric<Space>& metric) {
     found_.clear();
     if (!mesh_.kind_of[v].required) return found_;
     for (const ElementId e : mesh_.elements_of.of(v))
       for (const VertexId w : mesh_.corners_of[e]) {
-        const Vector<Dim> edge = mesh_.site_of[w].position - mesh_.site_of[v].position;
+        const Vector<Space> edge = mesh_.site_of[w].position - mesh_.site_of[v].position;
         if (w != v && mesh_.kind_of[w].required && squared_length(metric, edge) < 1)
           add(std::array{v, w});
       }
@@ -73,7 +73,7 @@ class RequiredAround {
     if (std::none_of(found_.begin(), found_.end(), has_all)) found_.push_back(entity);
   }
 
-  const Mesh<Dim>& mesh_;
+  const Mesh<Dim, Space>& mesh_;
   std::vector<EntityCorners<Dim>> found_;
 };
 
@@ -127,45 +127,45 @@ double size_across(const UnitSpace<Dim>& space, std::span<const Vector<Dim>> dir
 /// Logarithm of the metric in which the edges of an entity have length 1, where the metric asked
 /// for is the unit tensor. Over the edges of a regular simplex of k dimensions, the sum of e e' is
 /// (k + 1)/2 times the identity.
-template <int Dim>
-Metric<Dim> log_of_entity(const Mesh<Dim>& mesh, const EntityCorners<Dim>& corners,
-                          const UnitSpace<Dim>& space) {
+template <int Dim, int Space>
+Metric<Space> log_of_entity(const Mesh<Dim, Space>& mesh, const EntityCorners<Dim>& corners,
+                            const UnitSpace<Space>& space) {
   const auto count =
       static_cast<std::size_t>(std::find(corners.begin(), corners.end(), none) - corners.begin());
   const std::size_t along = count - 1;
-  Metric<Dim> sum;
+  Metric<Space> sum;
   double shortest = 1e300, longest = 0;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const Vector<Dim> edge =
+      const Vector<Space> edge =
           mesh.site_of[corners[i]].position - mesh.site_of[corners[j]].position;
       shortest = std::min(shortest, norm(edge));
       longest = std::max(longest, norm(edge));
-      const Vector<Dim> seen = space.there(edge);
-      for (std::size_t column = 0, at = 0; column < Dim; ++column)
+      const Vector<Space> seen = space.there(edge);
+      for (std::size_t column = 0, at = 0; column < Space; ++column)
         for (std::size_t row = 0; row <= column; ++row, ++at)
           sum.m[at] += seen.x[row] * seen.x[column];
     }
-  PrincipalAxes<Dim> axes = principal_axes(sum);
-  std::array<std::size_t, Dim> order;  // along the entity, then across it
-  for (std::size_t i = 0; i < Dim; ++i) order[i] = i;
+  PrincipalAxes<Space> axes = principal_axes(sum);
+  std::array<std::size_t, Space> order;  // along the entity, then across it
+  for (std::size_t i = 0; i < Space; ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return axes.value[a] > axes.value[b] || (axes.value[a] == axes.value[b] && a < b);
   });
   const double least = 1e-15 * axes.value[order[0]];
   double mean = 0;
-  std::array<Vector<Dim>, Dim> across;
+  std::array<Vector<Space>, Space> across;
   for (std::size_t i = 0; i < along; ++i) {
     double& value = axes.value[order[i]];
     value = std::log(static_cast<double>(count) / (2 * std::max(value, least)));
     mean += value / static_cast<double>(along);
   }
-  for (std::size_t i = along; i < Dim; ++i) across[i - along] = axes.vector[order[i]];
-  if (along < Dim) {
-    const double asked = size_across<Dim>(space, std::span(across).first(Dim - along));
+  for (std::size_t i = along; i < Space; ++i) across[i - along] = axes.vector[order[i]];
+  if (along < Space) {
+    const double asked = size_across<Space>(space, std::span(across).first(Space - along));
     const double size = std::clamp(asked * std::exp(-mean / 2), std::min(asked, shortest),
                                    std::max(asked, longest));
-    for (std::size_t i = along; i < Dim; ++i) axes.value[order[i]] = 2 * std::log(asked / size);
+    for (std::size_t i = along; i < Space; ++i) axes.value[order[i]] = 2 * std::log(asked / size);
   }
   return compose(axes);
 }
@@ -182,8 +182,8 @@ Metric<Dim> with_stretch_up_to(double most, const Metric<Dim>& log_metric) {
 }
 
 /// The longest edge of a vertex, in a metric.
-template <int Dim>
-double longest_edge(const Mesh<Dim>& mesh, VertexId v, const Metric<Dim>& metric) {
+template <int Dim, int Space>
+double longest_edge(const Mesh<Dim, Space>& mesh, VertexId v, const Metric<Space>& metric) {
   double square = 0;
   for (const ElementId e : mesh.elements_of.of(v))
     for (const VertexId w : mesh.corners_of[e])
@@ -195,18 +195,19 @@ double longest_edge(const Mesh<Dim>& mesh, VertexId v, const Metric<Dim>& metric
 /// The mean over required entities, or nothing if there are none. It makes no sizes shorter than
 /// 1/50 of the longest edge of the vertex: along that, sizes are interpolated, and those much below
 /// it would hold over far too much of it.
-template <int Dim>
-std::optional<Metric<Dim>> metric_of_required(const Mesh<Dim>& mesh, RequiredAround<Dim>& around,
-                                              VertexId v, const Metric<Dim>& asked) {
+template <int Dim, int Space>
+std::optional<Metric<Space>> metric_of_required(const Mesh<Dim, Space>& mesh,
+                                                RequiredAround<Dim, Space>& around, VertexId v,
+                                                const Metric<Space>& asked) {
   auto entities = around.of(v);
   if (entities.empty()) entities = around.short_edges(v, asked);
   if (entities.empty()) return std::nullopt;
-  const UnitSpace<Dim> space(asked);
-  Metric<Dim> mean;
+  const UnitSpace<Space> space(asked);
+  Metric<Space> mean;
   for (const auto& corners : entities)
     mean += 1.0 / static_cast<double>(entities.size()) * log_of_entity(mesh, corners, space);
   constexpr double most_stretch = 16, parts = 50;
-  PrincipalAxes<Dim> axes =
+  PrincipalAxes<Space> axes =
       principal_axes(with_stretch_up_to(most_stretch, without_little_stretch(mean)));
   const double finest = std::max(0.0, 2 * std::log(parts / longest_edge(mesh, v, asked)));
   for (double& value : axes.value) value = std::exp(std::min(value, finest));

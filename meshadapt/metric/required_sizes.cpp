@@ -78,10 +78,10 @@ struct Falling {
 
 /// Spreads tensors from sources over the edges of a mesh, where they change by a law and are
 /// intersected: a Jacobi iteration like that of limit_gradation, of what comes from sources only.
-template <int Dim, class Law>
+template <int Dim, int Space, class Law>
 class Spreading {
  public:
-  Spreading(const Executor& executor, const Mesh<Dim>& mesh, const Law& law)
+  Spreading(const Executor& executor, const Mesh<Dim, Space>& mesh, const Law& law)
       : executor_(executor),
         mesh_(mesh),
         law_(law),
@@ -90,7 +90,7 @@ class Spreading {
         has_changed_(mesh.vertex_slots(), 0),
         neighbours_(executor, mesh) {}
 
-  void start(VertexId vertex, const Metric<Dim>& tensor) {
+  void start(VertexId vertex, const Metric<Space>& tensor) {
     tensor_of_[vertex] = tensor;
     is_reached_[vertex] = has_changed_[vertex] = 1;
     changed_.push_back(vertex);
@@ -109,7 +109,7 @@ class Spreading {
 
   /// The tensor intersected with what has come to a vertex, if anything has; itself, bit for bit,
   /// if that changes nothing.
-  Metric<Dim> at(VertexId v, const Metric<Dim>& tensor) const {
+  Metric<Space> at(VertexId v, const Metric<Space>& tensor) const {
     return is_reached_[v] ? intersect(tensor, tensor_of_[v]) : tensor;
   }
 
@@ -117,24 +117,24 @@ class Spreading {
   /// Finds the new tensors from the old ones, then puts them in place.
   void sweep() {
     const auto active = neighbours_.of_all(changed_);
-    const auto raised = runtime::parallel_collect<Source<Dim>>(
+    const auto raised = runtime::parallel_collect<Source<Space>>(
         executor_, active.size(), [&](std::size_t i, auto&& append) {
-          Metric<Dim> tensor = tensor_of_[active[i]];
-          if (raise_from_neighbours(tensor, active[i])) append(Source<Dim>{active[i], tensor});
+          Metric<Space> tensor = tensor_of_[active[i]];
+          if (raise_from_neighbours(tensor, active[i])) append(Source<Space>{active[i], tensor});
         });
     for (const VertexId v : changed_) has_changed_[v] = 0;
     changed_.clear();
     for (const auto& [vertex, tensor] : raised) start(vertex, tensor);
   }
 
-  bool raise_from_neighbours(Metric<Dim>& tensor, VertexId vertex) {
+  bool raise_from_neighbours(Metric<Space>& tensor, VertexId vertex) {
     bool is_reached = is_reached_[vertex] != 0, raised = false;
     for (const VertexId from : neighbours_.of(vertex)) {
       if (!has_changed_[from]) continue;
-      const Vector<Dim> edge = mesh_.site_of[vertex].position - mesh_.site_of[from].position;
+      const Vector<Space> edge = mesh_.site_of[vertex].position - mesh_.site_of[from].position;
       const auto carried = law_(tensor_of_[from], edge);
       if (!carried) continue;
-      const Metric<Dim> both = is_reached ? intersect(tensor, *carried) : *carried;
+      const Metric<Space> both = is_reached ? intersect(tensor, *carried) : *carried;
       constexpr double tolerance = 1e-3;  // of the product of squared sizes
       if (is_reached && !(determinant(both) > (1 + tolerance) * determinant(tensor))) continue;
       tensor = both;
@@ -144,26 +144,26 @@ class Spreading {
   }
 
   const Executor& executor_;
-  const Mesh<Dim>& mesh_;
+  const Mesh<Dim, Space>& mesh_;
   Law law_;
-  std::vector<Metric<Dim>> tensor_of_;     // [vertex], where it is reached
+  std::vector<Metric<Space>> tensor_of_;   // [vertex], where it is reached
   std::vector<std::uint8_t> is_reached_;   // [vertex]
   std::vector<VertexId> changed_;          // in the last sweep
   std::vector<std::uint8_t> has_changed_;  // [vertex]
-  VertexNeighbours<Mesh<Dim>> neighbours_;
+  VertexNeighbours<Mesh<Dim, Space>> neighbours_;
 };
 
-template <int Dim>
-std::vector<Source<Dim>> sources_in(const Executor& executor, const Mesh<Dim>& mesh,
-                                    const std::vector<Metric<Dim>>& metric_of) {
-  runtime::PerThread<std::optional<RequiredAround<Dim>>> around(executor);
-  const auto found = runtime::parallel_collect<Source<Dim>>(
+template <int Dim, int Space>
+std::vector<Source<Space>> sources_in(const Executor& executor, const Mesh<Dim, Space>& mesh,
+                                      const std::vector<Metric<Space>>& metric_of) {
+  runtime::PerThread<std::optional<RequiredAround<Dim, Space>>> around(executor);
+  const auto found = runtime::parallel_collect<Source<Space>>(
       executor, mesh.vertex_slots(), [&](std::size_t i, auto&& append) {
         const auto v = static_cast<VertexId>(i);
-        std::optional<RequiredAround<Dim>>& mine = around.mine();
+        std::optional<RequiredAround<Dim, Space>>& mine = around.mine();
         if (!mine) mine.emplace(mesh);
         if (const auto metric = metric_of_required(mesh, *mine, v, metric_of[v]))
-          append(Source<Dim>{v, *metric});
+          append(Source<Space>{v, *metric});
       });
   return {found.begin(), found.end()};
 }
@@ -187,15 +187,15 @@ std::pair<double, double> sizes_in(const Executor& executor,
 
 }  // namespace
 
-template <int Dim>
-GradationReport take_required_sizes(const Executor& executor, const Mesh<Dim>& mesh, double factor,
-                                    std::vector<Metric<Dim>>& metric_of) {
-  const std::vector<Source<Dim>> sources = sources_in(executor, mesh, metric_of);
+template <int Dim, int Space>
+GradationReport take_required_sizes(const Executor& executor, const Mesh<Dim, Space>& mesh,
+                                    double factor, std::vector<Metric<Space>>& metric_of) {
+  const std::vector<Source<Space>> sources = sources_in(executor, mesh, metric_of);
   if (sources.empty()) return {.converged = true};
   const auto [finest, coarsest] = sizes_in(executor, metric_of);
   const double rate = std::log(factor);
-  Spreading<Dim, Growing<Dim>> growing(executor, mesh, {rate, coarsest});
-  Spreading<Dim, Falling<Dim>> falling(executor, mesh, {rate, finest});
+  Spreading<Dim, Space, Growing<Space>> growing(executor, mesh, {rate, coarsest});
+  Spreading<Dim, Space, Falling<Space>> falling(executor, mesh, {rate, finest});
   for (const auto& [vertex, metric] : sources) {
     growing.start(vertex, metric);
     falling.start(vertex, inverted(metric));
@@ -203,8 +203,8 @@ GradationReport take_required_sizes(const Executor& executor, const Mesh<Dim>& m
   const GradationReport up = growing.run(), down = falling.run();
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t i) {
     const auto v = static_cast<VertexId>(i);
-    const Metric<Dim> squares = inverted(metric_of[v]), coarse = falling.at(v, squares);
-    const Metric<Dim> asked = coarse == squares ? metric_of[v] : inverted(coarse);
+    const Metric<Space> squares = inverted(metric_of[v]), coarse = falling.at(v, squares);
+    const Metric<Space> asked = coarse == squares ? metric_of[v] : inverted(coarse);
     metric_of[v] = brought_into_range(growing.at(v, asked));
   });
   for (const auto& [vertex, metric] : sources) metric_of[vertex] = metric;
@@ -214,6 +214,8 @@ GradationReport take_required_sizes(const Executor& executor, const Mesh<Dim>& m
 
 template GradationReport take_required_sizes(const Executor&, const Mesh<2>&, double,
                                              std::vector<Metric<2>>&);
+template GradationReport take_required_sizes(const Executor&, const Mesh<2, 3>&, double,
+                                             std::vector<Metric<3>>&);
 template GradationReport take_required_sizes(const Executor&, const Mesh<3>&, double,
                                              std::vector<Metric<3>>&);
 

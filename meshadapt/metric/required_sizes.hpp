@@ -31,12 +31,14 @@ namespace ductile::meshadapt {
 ///
 /// Does not depend on the number of threads. Expects a factor of 1 or more. Throws
 /// std::bad_alloc if memory runs out. Thread safety: one caller; runs on the executor.
-template <int Dim>
-GradationReport take_required_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                    double factor, std::vector<Metric<Dim>>& metric_of);
+template <int Dim, int Space>
+GradationReport take_required_sizes(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                                    double factor, std::vector<Metric<Space>>& metric_of);
 
 extern template GradationReport take_required_sizes(const runtime::Executor&, const Mesh<2>&,
                                                     double, std::vector<Metric<2>>&);
+extern template GradationReport take_required_sizes(const runtime::Executor&, const Mesh<2, 3>&,
+                                                    double, std::vector<Metric<3>>&);
 extern template GradationReport take_required_sizes(const runtime::Executor&, const Mesh<3>&,
                                                     double, std::vector<Metric<3>>&);
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/quality.hpp"
+#include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/arrays.hpp"
@@ -16,6 +17,7 @@
 #include "mesh/finite_values.hpp"
 #include "mesh/indices.hpp"
 #include "metric/expect_metrics.hpp"
+#include "metric/interpolation.hpp"
 #include "metric/measure.hpp"
 
 namespace ductile::meshadapt {
@@ -38,32 +40,41 @@ std::vector<Site<Dim>> make_sites(const Executor& executor, const AnyMesh& mesh,
   return site_of;
 }
 
-/// Signed area or volume, rounding and all.
-template <int Dim>
-double signed_measure(const std::array<const Site<Dim>*, Dim + 1>& corner) {
-  const Vector<Dim> u = corner[1]->position - corner[0]->position;
-  const Vector<Dim> v = corner[2]->position - corner[0]->position;
-  if constexpr (Dim == 2)
+/// Signed area or volume, rounding and all; the area of a triangle in space.
+template <int Dim, int Space>
+double signed_measure(const std::array<const Site<Space>*, Dim + 1>& corner) {
+  const Vector<Space> u = corner[1]->position - corner[0]->position;
+  const Vector<Space> v = corner[2]->position - corner[0]->position;
+  if constexpr (Dim < Space)
+    return norm(cross(u, v)) / 2;
+  else if constexpr (Dim == 2)
     return (u[0] * v[1] - u[1] * v[0]) / 2;
   else
     return dot(cross(u, v), corner[3]->position - corner[0]->position) / 6;
 }
 
-template <int Dim>
-std::array<const Site<Dim>*, Dim + 1> corners_of(const std::vector<Site<Dim>>& site_of,
-                                                 const Corners<Dim>& element) {
-  std::array<const Site<Dim>*, Dim + 1> corner;
+template <int Dim, int Space>
+std::array<const Site<Space>*, Dim + 1> corners_of(const std::vector<Site<Space>>& site_of,
+                                                   const Corners<Dim>& element) {
+  std::array<const Site<Space>*, Dim + 1> corner;
   for (std::size_t i = 0; i < corner.size(); ++i) corner[i] = &site_of[element[i]];
   return corner;
 }
 
 /// Mean ratio in the mean metric. Rounding may make that of an ideal element a little more than 1;
 /// it is reported as 1.
-template <int Dim>
-double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
-  const auto [metric, scale] = mean_metric<Dim>(corner);
+template <int Dim, int Space>
+double quality_of(const std::array<const Site<Space>*, Dim + 1>& corner) {
+  const auto [metric, scale] = mean_metric<Space>(corner);
   const double measure = signed_measure<Dim>(corner);
-  const double metric_measure = metric_volume<Dim>(std::abs(measure), scale);
+  double metric_measure;
+  if constexpr (Dim < Space)
+    metric_measure =
+        std::sqrt(std::max(0.0, squared_area(metric, corner[1]->position - corner[0]->position,
+                                             corner[2]->position - corner[0]->position))) /
+        2;
+  else
+    metric_measure = metric_volume<Dim>(std::abs(measure), scale);
   const double ideal = Dim == 2 ? 4 * std::numbers::sqrt3 * metric_measure
                                 : 12 * std::cbrt(9 * metric_measure * metric_measure);
   const double squares = sum_of_squared_lengths<Dim>(metric, corner);
@@ -97,9 +108,9 @@ double length_of(const Site<Dim>& a, const Site<Dim>& b) {
 }
 
 /// The lengths of all edges, each counted once.
-template <int Dim>
+template <int Dim, int Space>
 runtime::UnsetVector<double> edge_lengths(const AdjacentMesh& mesh,
-                                          const std::vector<Site<Dim>>& site_of) {
+                                          const std::vector<Site<Space>>& site_of) {
   const VertexElements& lists = mesh.lists<Dim>();
   const auto& elements = elements_in<Dim>(mesh.mesh()).vertices;
   runtime::PerThread<std::vector<VertexId>> found(mesh.executor());
@@ -111,8 +122,8 @@ runtime::UnsetVector<double> edge_lengths(const AdjacentMesh& mesh,
       });
 }
 
-template <int Dim>
-std::vector<double> qualities(const Executor& executor, const std::vector<Site<Dim>>& site_of,
+template <int Dim, int Space>
+std::vector<double> qualities(const Executor& executor, const std::vector<Site<Space>>& site_of,
                               const std::vector<Corners<Dim>>& elements) {
   std::vector<double> quality_of_element(elements.size());
   runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
@@ -121,17 +132,31 @@ std::vector<double> qualities(const Executor& executor, const std::vector<Site<D
   return quality_of_element;
 }
 
-template <int Dim>
-double complexity_of(const Executor& executor, const std::vector<Site<Dim>>& site_of,
+/// Of sqrt(det metric), in the plane of a triangle in space.
+template <int Dim, int Space>
+double mean_density(const std::array<const Site<Space>*, Dim + 1>& corner) {
+  double density = 0;
+  [[maybe_unused]] Vector<Space> normal;
+  if constexpr (Dim < Space)
+    normal = unit(facet_normal({corner[0]->position, corner[1]->position, corner[2]->position}));
+  for (const Site<Space>* site : corner) {
+    if constexpr (Dim < Space)
+      density += std::exp(log_density_in_plane(site->metric, normal)) / (Dim + 1);
+    else
+      density += metric_volume<Dim>(1, site->scale) / (Dim + 1);
+  }
+  return density;
+}
+
+template <int Dim, int Space>
+double complexity_of(const Executor& executor, const std::vector<Site<Space>>& site_of,
                      const std::vector<Corners<Dim>>& elements) {
   return runtime::parallel_reduce(
       executor, elements.size(), 0.0,
       [&](std::size_t e) {
         const auto corner = corners_of<Dim>(site_of, elements[e]);
-        double density = 0;
-        for (const Site<Dim>* site : corner)
-          density += metric_volume<Dim>(1, site->scale) / (Dim + 1);
-        return std::abs(signed_measure<Dim>(corner)) * density;
+        const double measure = std::abs(signed_measure<Dim>(corner));
+        return measure > 0 || Dim == Space ? measure * mean_density<Dim>(corner) : 0;
       },
       [](double a, double b) { return a + b; });
 }
@@ -143,12 +168,12 @@ std::size_t count_if_below(const Executor& executor, std::span<const double> val
       [](std::size_t a, std::size_t b) { return a + b; });
 }
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 MeshStatistics measure_in(const AdjacentMesh& adjacent, const AnyField* metric) {
   const Executor& executor = adjacent.executor();
   const AnyMesh& mesh = adjacent.mesh();
   const auto& elements = elements_in<Dim>(mesh).vertices;
-  const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
+  const std::vector<Site<Space>> site_of = make_sites<Space>(executor, mesh, metric);
   const runtime::UnsetVector<double> lengths = edge_lengths<Dim>(adjacent, site_of);
 
   MeshStatistics result;
@@ -171,7 +196,8 @@ MeshStatistics measure_in(const AdjacentMesh& adjacent, const AnyField* metric) 
 void expect_measurable(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   expect_coordinates(mesh);
   expect_finite_coordinates(executor, mesh);
-  mesh.dimension == 2 ? expect_corners<2>(executor, mesh) : expect_corners<3>(executor, mesh);
+  element_dimension(mesh) == 2 ? expect_corners<2>(executor, mesh)
+                               : expect_corners<3>(executor, mesh);
   if (metric == nullptr) return;
   expect_field_of(*metric, mesh);
   if (metric->types != std::vector{AnyField::Type::symmetric})
@@ -188,6 +214,9 @@ void expect_measurable(const Executor& executor, const AnyMesh& mesh, const AnyF
 std::vector<double> element_qualities(const Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric) {
   expect_measurable(executor, mesh, metric);
+  if (is_surface(mesh))
+    return qualities<2>(executor, make_sites<3>(executor, mesh, metric),
+                        elements_in<2>(mesh).vertices);
   if (mesh.dimension == 2)
     return qualities<2>(executor, make_sites<2>(executor, mesh, metric),
                         elements_in<2>(mesh).vertices);
@@ -197,6 +226,7 @@ std::vector<double> element_qualities(const Executor& executor, const AnyMesh& m
 
 MeshStatistics measure(const AdjacentMesh& mesh, const AnyField* metric) {
   expect_measurable(mesh.executor(), mesh.mesh(), metric);
+  if (is_surface(mesh.mesh())) return measure_in<2, 3>(mesh, metric);
   return mesh.mesh().dimension == 2 ? measure_in<2>(mesh, metric) : measure_in<3>(mesh, metric);
 }
 

@@ -17,8 +17,8 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
-auto elements_around(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+auto elements_around(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.elements_of.of(vertex);
 }
 template <int Dim>

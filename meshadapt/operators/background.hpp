@@ -14,17 +14,18 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space>
 class BoxTree;
 template <int Dim>
 struct ClosestPoint;
 
 /// The input mesh with its metric; see the top of this file.
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Background {
  public:
   /// Copies elements, positions and metrics of the mesh; takes over its neighbours.
-  Background(const runtime::Executor& executor, const Mesh<Dim>& mesh, Neighbours<Dim> neighbours);
+  Background(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+             Neighbours<Dim> neighbours);
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
@@ -34,7 +35,7 @@ class Background {
   /// an element much too coarse for how they differ, with sizes that grow linearly.
   struct Sample {
     ElementId host;
-    Metric<Dim> metric;
+    Metric<Space> metric;
   };
 
   /// The metric at a point, found by walking from the element `near`. Of a point outside, the
@@ -42,7 +43,7 @@ class Background {
   /// curved boundaries, those of an element that is close to it. If `near` is no element, the walk
   /// starts at the first. Of a point that is no number the host is an element, but its metric is no
   /// number either. Thread safety: any thread.
-  Sample sample(const Vector<Dim>& point, ElementId near) const;
+  Sample sample(const Vector<Space>& point, ElementId near) const;
 
   /// Starts to bring where a walk begins into the cache. Thread safety: any thread.
   [[gnu::always_inline]] void prefetch(ElementId near) const {
@@ -61,7 +62,7 @@ class Background {
 
   /// The logarithm of the metric at one of its vertices. Thread safety: to change it, while nobody
   /// samples, one thread for each vertex.
-  Metric<Dim>& log_metric(VertexId v) { return log_metric_of_[v]; }
+  Metric<Space>& log_metric(VertexId v) { return log_metric_of_[v]; }
 
   /// The integral over the mesh of sqrt(det metric). Thread safety: while nobody changes metrics.
   double complexity(const runtime::Executor& executor) const;
@@ -75,19 +76,21 @@ class Background {
   std::size_t bytes() const;
 
  private:
-  ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
-  std::array<Vector<Dim>, Dim + 1> places_of(ElementId element) const;
+  bool is_far_off(ElementId element, const Vector<Space>& point) const;
+  ClosestPoint<Dim> closest(const Vector<Space>& point) const;
+  std::array<Vector<Space>, Dim + 1> places_of(ElementId element) const;
 
-  GrowingArray<Corners<Dim>> corners_of_;    // [element]
-  Neighbours<Dim> neighbours_;               // [element][facet]
-  GrowingArray<Vector<Dim>> position_of_;    // [vertex]
-  GrowingArray<Metric<Dim>> log_metric_of_;  // [vertex]
+  GrowingArray<Corners<Dim>> corners_of_;      // [element]
+  Neighbours<Dim> neighbours_;                 // [element][facet]
+  GrowingArray<Vector<Space>> position_of_;    // [vertex]
+  GrowingArray<Metric<Space>> log_metric_of_;  // [vertex]
   // Seldom needed: few walks end at a hole or outside.
-  mutable runtime::Lazy<std::unique_ptr<BoxTree<Dim>>> tree_;
+  mutable runtime::Lazy<std::unique_ptr<BoxTree<Dim, Space>>> tree_;
   double slack_;  // by how much weights may be negative where a walk ends outside
 };
 
 extern template class Background<2>;
+extern template class Background<2, 3>;
 extern template class Background<3>;
 
 }  // namespace ductile::meshadapt

@@ -42,7 +42,7 @@ struct BallQualities {
   friend bool operator==(const BallQualities&, const BallQualities&) = default;
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class VertexBall {
  public:
   struct Score {

@@ -72,8 +72,8 @@ struct ListChange {
   CurveId curve = 0;
 };
 
-template <int Dim>
-void change_list(Mesh<Dim>& mesh, VertexId owner, const ListChange& change) {
+template <int Dim, int Space>
+void change_list(Mesh<Dim, Space>& mesh, VertexId owner, const ListChange& change) {
   switch (change.kind) {
     case ListChange::Kind::add_element:
       mesh.elements_of.insert(owner, change.element);
@@ -91,8 +91,8 @@ void change_list(Mesh<Dim>& mesh, VertexId owner, const ListChange& change) {
 }
 
 /// Renews what is derived from an element's corners after they, or their sites, changed.
-template <int Dim>
-void update_element(Mesh<Dim>& mesh, ElementId element) {
+template <int Dim, int Space>
+void update_element(Mesh<Dim, Space>& mesh, ElementId element) {
   mesh.quality_of[element] = static_cast<float>(mesh.quality_at(mesh.corners_of[element]));
   mesh.changed_at[element] = mesh.epoch;
 }
@@ -100,8 +100,8 @@ void update_element(Mesh<Dim>& mesh, ElementId element) {
 /// Changes of lists that wait until nobody reads them.
 using DeferredLists = runtime::DeferredUpdate<ListChange>;
 
-template <int Dim>
-std::size_t commit_lists(Mesh<Dim>& mesh, DeferredLists& deferred) {
+template <int Dim, int Space>
+std::size_t commit_lists(Mesh<Dim, Space>& mesh, DeferredLists& deferred) {
   return deferred.commit(
       [&](VertexId owner, const ListChange& change) { change_list(mesh, owner, change); });
 }
@@ -110,12 +110,12 @@ std::size_t commit_lists(Mesh<Dim>& mesh, DeferredLists& deferred) {
 /// deferred, or made at once under its lock. Lists are sorted, so that they come out the same.
 /// Nobody may read the list of a vertex that he shares with others meanwhile.
 /// Thread safety: the thread that made it, within one iteration of a loop.
-template <int Dim>
+template <int Dim, int Space = Dim>
 class SharedLists {
  public:
   using Kind = ListChange::Kind;
 
-  explicit SharedLists(Mesh<Dim>& mesh, DeferredLists* deferred = nullptr) : mesh_(mesh) {
+  explicit SharedLists(Mesh<Dim, Space>& mesh, DeferredLists* deferred = nullptr) : mesh_(mesh) {
     if (deferred != nullptr) deferrer_ = deferred->mine();
   }
 
@@ -152,14 +152,14 @@ class SharedLists {
     deferrer_->defer(owner, change);
   }
 
-  Mesh<Dim>& mesh_;
+  Mesh<Dim, Space>& mesh_;
   std::optional<runtime::Deferrer<ListChange, runtime::CommitOrder::any>> deferrer_;
 };
 
 /// Do elements close a ring around this vertex, in which each neighbour comes first in the facet
 /// opposite to the vertex of one element?
-template <int Dim>
-bool is_in_a_ring(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+bool is_in_a_ring(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return Dim == 2 && mesh.kind_of[vertex].class_dimension == Dim;
 }
 
@@ -174,8 +174,8 @@ inline std::array<VertexId, 2> before_descents(const Facet<3>& facet) {
 
 /// Visits the vertices that share an element with `vertex`, some of them several times, unless they
 /// are in a ring.
-template <int Dim>
-void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
+template <int Dim, int Space>
+void visit_neighbours(const Mesh<Dim, Space>& mesh, VertexId vertex, auto&& visit) {
   if (is_in_a_ring(mesh, vertex)) {
     for (const ElementId element : mesh.elements_of.of(vertex))
       visit(facet_opposite<Dim>(mesh.corners_of[element], vertex)[0]);
@@ -196,8 +196,8 @@ void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
 
 /// The vertices that share an element with `vertex`, each once, in an order that follows from the
 /// order of its elements.
-template <int Dim>
-VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+VertexBuffer neighbours_of(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   VertexBuffer neighbours;
   if (is_in_a_ring(mesh, vertex)) {
     visit_neighbours(mesh, vertex, [&](VertexId other) { neighbours.push_back(other); });
@@ -210,9 +210,9 @@ VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
 }
 
 /// Gives an element the number of one that is gone.
-template <int Dim>
-void move_element(Mesh<Dim>& mesh, ElementId from, ElementId to) {
-  const SharedLists<Dim> lists(mesh);
+template <int Dim, int Space>
+void move_element(Mesh<Dim, Space>& mesh, ElementId from, ElementId to) {
+  const SharedLists<Dim, Space> lists(mesh);
   for (const VertexId v : mesh.corners_of[from]) {
     if (v == none) break;
     lists.remove(v, from);
@@ -228,8 +228,8 @@ void move_element(Mesh<Dim>& mesh, ElementId from, ElementId to) {
 
 /// Reaches for a vertex and its neighbours: whoever has these may change the elements around the
 /// vertex, but not read the lists of its neighbours, which others may be changing; see SharedLists.
-template <int Dim>
-bool reach_ball(const Mesh<Dim>& mesh, VertexId vertex, auto& reach) {
+template <int Dim, int Space>
+bool reach_ball(const Mesh<Dim, Space>& mesh, VertexId vertex, auto& reach) {
   if (!reach(vertex)) return false;
   bool reached = true;
   visit_neighbours(mesh, vertex, [&](VertexId other) { reached = reached && reach(other); });
@@ -237,8 +237,8 @@ bool reach_ball(const Mesh<Dim>& mesh, VertexId vertex, auto& reach) {
 }
 
 /// The patch on which the edge a-b of this element lies, judging by the element's own facets.
-template <int Dim>
-PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, VertexId b) {
+template <int Dim, int Space>
+PatchId patch_of_edge(const Mesh<Dim, Space>& mesh, ElementId element, VertexId a, VertexId b) {
   const Corners<Dim>& corners = mesh.corners_of[element];
   for (std::size_t i = 0; i < corners.size(); ++i)
     if (corners[i] != a && corners[i] != b && mesh.patches_of[element][i] != 0)
@@ -247,17 +247,72 @@ PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, Vert
 }
 
 /// May the vertex only move along a curve that bends?
-template <int Dim>
-bool on_smooth_curve(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+bool on_smooth_curve(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return Dim == 3 && mesh.kind_of[vertex].class_dimension == 1 &&
          mesh.curves[mesh.entity_of[vertex]].smooth;
 }
 
 /// May the vertex only move in a patch that bends?
-template <int Dim>
-bool on_smooth_patch(const Mesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+bool on_smooth_patch(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.kind_of[vertex].class_dimension == Dim - 1 &&
          mesh.patches[mesh.entity_of[vertex]].smooth;
+}
+
+/// May a vertex of a surface move only in a patch that bends, inside of it?
+template <int Dim, int Space>
+bool in_smooth_patch(const Mesh<Dim, Space>& mesh, VertexId vertex) {
+  if constexpr (Dim == Space)
+    return false;
+  else
+    return mesh.kind_of[vertex].class_dimension == Dim &&
+           mesh.regions[mesh.region_of[mesh.elements_of.of(vertex)[0]]].smooth;
+}
+
+/// The corners of an element if one of them were at another place.
+template <int Dim, int Space>
+std::array<Vector<Space>, Dim + 1> corners_with(const Mesh<Dim, Space>& mesh, ElementId element,
+                                                VertexId vertex, const Vector<Space>& position) {
+  std::array<Vector<Space>, Dim + 1> corner;
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const VertexId v = mesh.corners_of[element][i];
+    corner[i] = v == vertex ? position : mesh.site_of[v].position;
+  }
+  return corner;
+}
+
+/// Is a triangle of a surface turned as its patch is, if that is flat, or close to it all over?
+inline bool is_on_patch(const Mesh<2, 3>& mesh, const std::array<Vector<3>, 3>& triangle,
+                        std::uint32_t region) {
+  const Patch<3>& patch = mesh.regions[region];
+  return patch.smooth ? mesh.surface->facets.cover(triangle, patch.sheet)
+                      : dot(facet_normal(triangle), patch.normal) > 0;
+}
+
+/// Do a triangle of a surface, and its edges on smooth curves, stay close to what was there in the
+/// input if one of its corners moves? A flat one is looked at where it ends at a smooth curve.
+inline bool keeps_surface(const Mesh<2, 3>& mesh, ElementId element, VertexId vertex,
+                          const Vector<3>& position) {
+  if (!mesh.surface) return true;
+  const auto corner = corners_with(mesh, element, vertex, position);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Curve& curve = mesh.patches[mesh.patches_of[element][i]];
+    if (!curve.smooth || mesh.corners_of[element][i] == vertex) continue;
+    if (!mesh.surface->edges.cover({corner[(i + 1) % 3], corner[(i + 2) % 3]}, curve.sheet))
+      return false;
+  }
+  const Patch<3>& patch = mesh.regions[mesh.region_of[element]];
+  return !(patch.smooth || on_smooth_patch(mesh, vertex)) ||
+         mesh.surface->facets.cover(corner, patch.sheet);
+}
+
+/// Does a triangle on a flat patch of a surface keep its turn if one of its corners moves?
+inline bool keeps_facets_turned(const Mesh<2, 3>& mesh, ElementId element, VertexId vertex,
+                                const Vector<3>& position) {
+  const Patch<3>& patch = mesh.regions[mesh.region_of[element]];
+  return patch.smooth ||
+         dot(facet_normal(corners_with(mesh, element, vertex, position)), patch.normal) > 0;
 }
 
 /// Do the element's facets on smooth patches, and those that end at a smooth curve, stay close to
@@ -340,8 +395,9 @@ struct FacetOnPatch {
 };
 
 /// The facets that lie on patches before or after a replacement.
-template <int Dim>
-Buffer<FacetOnPatch<Dim>, 16> tagged_facets(const Mesh<Dim>& mesh, const Replacement<Dim>& plan) {
+template <int Dim, int Space>
+Buffer<FacetOnPatch<Dim>, 16> tagged_facets(const Mesh<Dim, Space>& mesh,
+                                            const Replacement<Dim>& plan) {
   Buffer<FacetOnPatch<Dim>, 16> tagged;
   for (const ElementId e : plan.old_elements)
     for (std::size_t i = 0; i <= Dim; ++i)
@@ -355,9 +411,9 @@ Buffer<FacetOnPatch<Dim>, 16> tagged_facets(const Mesh<Dim>& mesh, const Replace
 /// Carries out a replacement: outer facets keep their patches. fresh() is the number of an element
 /// that is not there yet. Thread safety: any thread, if nobody reads or writes the elements to go,
 /// or reads the lists of their corners.
-template <int Dim>
-void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, const SharedLists<Dim>& lists,
-             auto&& fresh) {
+template <int Dim, int Space>
+void replace(Mesh<Dim, Space>& mesh, const Replacement<Dim>& plan,
+             const SharedLists<Dim, Space>& lists, auto&& fresh) {
   const auto tagged = tagged_facets(mesh, plan);
   const std::uint32_t region = mesh.region_of[plan.old_elements[0]];
   for (std::size_t n = 0; n < plan.new_elements.size(); ++n) {

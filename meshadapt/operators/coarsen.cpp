@@ -8,12 +8,10 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
-runtime::UnsetVector<VertexId> Coarsen<Dim>::short_edge_vertices(const runtime::Executor& executor,
-                                                                 const Mesh<Dim>& mesh,
-                                                                 EdgeSurvey<Dim>& survey,
-                                                                 double short_edge,
-                                                                 std::uint32_t after) {
+template <int Dim, int Space>
+runtime::UnsetVector<VertexId> Coarsen<Dim, Space>::short_edge_vertices(
+    const runtime::Executor& executor, const Mesh<Dim, Space>& mesh, EdgeSurvey<Dim, Space>& survey,
+    double short_edge, std::uint32_t after) {
   const auto marked = mark_changed(executor, mesh, after);
   const auto short_edge_vertices =
       mark_ends_of_short_edges(executor, mesh, survey, marked, short_edge);
@@ -26,8 +24,8 @@ runtime::UnsetVector<VertexId> Coarsen<Dim>::short_edge_vertices(const runtime::
 }
 
 /// Corners stay, and so does whatever belongs to required entities: its class dimension is 0, too.
-template <int Dim>
-bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::decide(VertexId gone, Plan& plan) const {
   const auto ball = mesh_.elements_of.of(gone);
   if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].class_dimension == 0)
     return false;
@@ -49,8 +47,8 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   return false;
 }
 
-template <int Dim>
-auto Coarsen<Dim>::ring_around(VertexId gone) const -> Ring {
+template <int Dim, int Space>
+auto Coarsen<Dim, Space>::ring_around(VertexId gone) const -> Ring {
   Ring ring{neighbours_of(mesh_, gone), {}};
   for (const VertexId v : ring.vertices)
     ring.edges.push_back(end_squares(mesh_.site_of[gone], mesh_.site_of[v]));
@@ -58,8 +56,9 @@ auto Coarsen<Dim>::ring_around(VertexId gone) const -> Ring {
 }
 
 /// The neighbours to which it is short, and may move, the closest first.
-template <int Dim>
-auto Coarsen<Dim>::candidates(VertexId gone, const Ring& ring) const -> Buffer<Candidate, 32> {
+template <int Dim, int Space>
+auto Coarsen<Dim, Space>::candidates(VertexId gone, const Ring& ring) const
+    -> Buffer<Candidate, 32> {
   Buffer<Candidate, 32> found;
   for (std::size_t i = 0; i < ring.edges.size(); ++i) {
     const EndSquares& edge = ring.edges[i];
@@ -74,8 +73,8 @@ auto Coarsen<Dim>::candidates(VertexId gone, const Ring& ring) const -> Buffer<C
 /// A vertex leaves a curve only along the curve, and a patch only within the patch. No element on
 /// the edge may have two facets on patches there: it would take the boundary with it (such an
 /// element is flat but for rounding).
-template <int Dim>
-bool Coarsen<Dim>::keeps_geometry(VertexId gone, VertexId kept) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::keeps_geometry(VertexId gone, VertexId kept) const {
   const int class_dimension = mesh_.kind_of[gone].class_dimension;
   if (class_dimension == Dim) return true;
   for (const ElementId e : mesh_.elements_of.of(gone)) {
@@ -92,8 +91,8 @@ bool Coarsen<Dim>::keeps_geometry(VertexId gone, VertexId kept) const {
 }
 
 /// Between the ends of two smooth curves there may be a last triangle of a patch.
-template <int Dim>
-bool Coarsen<Dim>::keeps_patches(VertexId gone, VertexId kept) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::keeps_patches(VertexId gone, VertexId kept) const {
   if (!on_smooth_curve(mesh_, gone) || mesh_.kind_of[kept].class_dimension != 0) return true;
   for (const CurveLink& link : mesh_.links_of.of(gone)) {
     if (link.to == kept || mesh_.kind_of[link.to].class_dimension != 0) continue;
@@ -111,8 +110,8 @@ bool Coarsen<Dim>::keeps_patches(VertexId gone, VertexId kept) const {
 
 /// If edges are too long already, new ones may be nearly as long as the longest of them. The one
 /// that looks longest is measured first, so that hardly any other has to be measured closely.
-template <int Dim>
-double Coarsen<Dim>::longest_allowed(const Ring& ring) const {
+template <int Dim, int Space>
+double Coarsen<Dim, Space>::longest_allowed(const Ring& ring) const {
   if (!rules_.extends_long_edges) return rules_.stretched_edge;
   double longest = rules_.long_edge / 1.02;
   const auto looks_shorter = [](const EndSquares& one, const EndSquares& other) {
@@ -125,21 +124,22 @@ double Coarsen<Dim>::longest_allowed(const Ring& ring) const {
   return std::max(rules_.stretched_edge, 1.02 * longest);
 }
 
-template <int Dim>
-bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const {
-  const Site<Dim>& kept = mesh_.site_of[plan.kept];
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::keeps_edges_short(const Plan& plan, const Ring& ring,
+                                            double longest) const {
+  const Site<Space>& kept = mesh_.site_of[plan.kept];
   return std::all_of(ring.vertices.begin(), ring.vertices.end(), [&](VertexId v) {
     return v == plan.kept || shorter_than(mesh_.site_of[v], kept, longest);
   });
 }
 
 /// Notes the qualities in the plan.
-template <int Dim>
-bool Coarsen<Dim>::keeps_quality(Plan& plan, double worst_before) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::keeps_quality(Plan& plan, double worst_before) const {
   plan.qualities.clear();
   const double least = std::min(rules_.kept_quality * worst_before, rules_.accepted_quality);
-  const bool on_boundary = mesh_.kind_of[plan.gone].class_dimension < Dim;
-  const Site<Dim>& kept = mesh_.site_of[plan.kept];
+  const bool on_boundary = mesh_.kind_of[plan.gone].class_dimension < Space;
+  const Site<Space>& kept = mesh_.site_of[plan.kept];
   for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
     const Corners<Dim>& corners = mesh_.corners_of[e];
     if (contains(corners, plan.kept)) continue;
@@ -154,16 +154,17 @@ bool Coarsen<Dim>::keeps_quality(Plan& plan, double worst_before) const {
 }
 
 /// Last, as it takes the longest.
-template <int Dim>
-bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
-  if (!mesh_.surface || mesh_.kind_of[plan.gone].class_dimension == Dim) return true;
-  const Vector<Dim>& kept = mesh_.site_of[plan.kept].position;
-  if (on_smooth_curve(mesh_, plan.gone))
-    for (const CurveLink& link : mesh_.links_of.of(plan.gone))
-      if (link.to != plan.kept &&
-          !mesh_.surface->edges.cover({mesh_.site_of[link.to].position, kept},
-                                      mesh_.curves[link.curve].sheet))
-        return false;
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::keeps_surface(const Plan& plan) const {
+  if (!mesh_.surface || mesh_.kind_of[plan.gone].class_dimension == Space) return true;
+  const Vector<Space>& kept = mesh_.site_of[plan.kept].position;
+  if constexpr (Dim == 3)
+    if (on_smooth_curve(mesh_, plan.gone))
+      for (const CurveLink& link : mesh_.links_of.of(plan.gone))
+        if (link.to != plan.kept &&
+            !mesh_.surface->edges.cover({mesh_.site_of[link.to].position, kept},
+                                        mesh_.curves[link.curve].sheet))
+          return false;
   const auto ball = mesh_.elements_of.of(plan.gone);
   return std::all_of(ball.begin(), ball.end(), [&](ElementId e) {
     return contains(mesh_.corners_of[e], plan.kept) ||
@@ -175,8 +176,8 @@ bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
 /// rim may be there as well. Both would become one, and the sides grow together. Such an edge is
 /// not made, because the other patch may change at the same time. Nor is a triangle from rim to rim
 /// to rim, which might be all that is left of both.
-template <int Dim>
-bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::keeps_sides_apart(const Plan& plan) const {
   const auto on_rim = [&](VertexId v) { return mesh_.kind_of[v].class_dimension < Dim - 1; };
   if (mesh_.kind_of[plan.gone].class_dimension == Dim || !on_rim(plan.kept)) return true;
   if (ends_curve(plan)) return false;
@@ -212,8 +213,8 @@ bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
 
 /// Would a curve on a patch that another one faces become a single edge? Another curve between the
 /// same ends might as well, as do the lips of a crack.
-template <int Dim>
-bool Coarsen<Dim>::ends_curve(const Plan& plan) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::ends_curve(const Plan& plan) const {
   const auto is_end = [&](VertexId v) { return mesh_.kind_of[v].class_dimension == 0; };
   if (Dim == 2 || mesh_.kind_of[plan.gone].class_dimension != 1 || !is_end(plan.kept)) return false;
   for (const CurveLink& link : mesh_.links_of.of(plan.gone))
@@ -229,16 +230,16 @@ bool Coarsen<Dim>::ends_curve(const Plan& plan) const {
 
 /// Would the third side of a facet at the edge, opposite to the vertex that goes, be on the rim
 /// then? It may be that of a triangle that is all of the patch, and of the other one.
-template <int Dim>
-bool Coarsen<Dim>::joins_rim(const Plan& plan, ElementId element, std::size_t facet) const {
+template <int Dim, int Space>
+bool Coarsen<Dim, Space>::joins_rim(const Plan& plan, ElementId element, std::size_t facet) const {
   if (Dim == 2 || mesh_.kind_of[plan.gone].class_dimension != 1) return false;
   for (const VertexId v : facet_of<Dim>(mesh_.corners_of[element], static_cast<int>(facet)))
     if (v != plan.gone && v != plan.kept && mesh_.curve_of(plan.gone, v) != 0) return true;
   return false;
 }
 
-template <int Dim>
-void Coarsen<Dim>::note_short_edges(Plan& plan, const Ring& ring) const {
+template <int Dim, int Space>
+void Coarsen<Dim, Space>::note_short_edges(Plan& plan, const Ring& ring) const {
   plan.short_edge_vertices.clear();
   for (const VertexId v : ring.vertices)
     if (v != plan.kept && mesh_.kind_of[v].class_dimension != 0 &&
@@ -246,8 +247,8 @@ void Coarsen<Dim>::note_short_edges(Plan& plan, const Ring& ring) const {
       plan.short_edge_vertices.push_back(v);
 }
 
-template <int Dim>
-void Coarsen<Dim>::collapse(const Plan& plan, const SharedLists<Dim>& lists) {
+template <int Dim, int Space>
+void Coarsen<Dim, Space>::collapse(const Plan& plan, const SharedLists<Dim, Space>& lists) {
   Buffer<ElementId, 64> removed, stretched;
   for (const ElementId e : mesh_.elements_of.of(plan.gone))
     (contains(mesh_.corners_of[e], plan.kept) ? removed : stretched).push_back(e);
@@ -268,8 +269,8 @@ void Coarsen<Dim>::collapse(const Plan& plan, const SharedLists<Dim>& lists) {
 
 /// An element on the collapsing edge folds flat: what lies on the patch of its facet at `kept` is
 /// afterwards the stretched element across its facet at `gone`.
-template <int Dim>
-void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
+template <int Dim, int Space>
+void Coarsen<Dim, Space>::pass_patch_on(ElementId element, const Plan& plan) {
   const Corners<Dim>& corners = mesh_.corners_of[element];
   const auto at_gone = static_cast<std::size_t>(corner_of(corners, plan.gone));
   const PatchId patch = mesh_.patches_of[element][at_gone];  // of the facet at `kept`
@@ -288,17 +289,17 @@ void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
 
 /// Removes the element, also from the lists of the corners that stay. Another collapse may take
 /// elements from the same vertex at the same time.
-template <int Dim>
-void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan,
-                                  const SharedLists<Dim>& lists) {
+template <int Dim, int Space>
+void Coarsen<Dim, Space>::remove_element(ElementId element, const Plan& plan,
+                                         const SharedLists<Dim, Space>& lists) {
   for (const VertexId v : mesh_.corners_of[element])
     if (v != plan.gone && v != plan.kept) lists.remove(v, element);
   mesh_.corners_of[element].fill(none);
 }
 
 /// The curve now goes from `kept` straight to the vertex on the other side of `gone`.
-template <int Dim>
-void Coarsen<Dim>::join_links(const Plan& plan, const SharedLists<Dim>& lists) {
+template <int Dim, int Space>
+void Coarsen<Dim, Space>::join_links(const Plan& plan, const SharedLists<Dim, Space>& lists) {
   using Kind = ListChange::Kind;
   for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
     lists.change_link(link.to, {Kind::remove_link, plan.gone, link.curve});
@@ -310,6 +311,7 @@ void Coarsen<Dim>::join_links(const Plan& plan, const SharedLists<Dim>& lists) {
 }
 
 template class Coarsen<2>;
+template class Coarsen<2, 3>;
 template class Coarsen<3>;
 
 }  // namespace ductile::meshadapt

@@ -21,7 +21,7 @@ struct EdgeCollapse {
   friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Coarsen {
  public:
   // ---- What it works on ----
@@ -29,7 +29,7 @@ class Coarsen {
   using Plan = EdgeCollapse;
   static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
-  Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
+  Coarsen(Mesh<Dim, Space>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
 
   /// For the strategy `colours`: lists are not changed at once, but by deferred updates.
   void defer_lists(const runtime::Executor& executor) { deferred_.emplace(executor); }
@@ -37,8 +37,8 @@ class Coarsen {
   /// The vertices with an edge shorter than `short_edge` that could go, next to elements changed
   /// after an epoch.
   static runtime::UnsetVector<VertexId> short_edge_vertices(const runtime::Executor& executor,
-                                                            const Mesh<Dim>& mesh,
-                                                            EdgeSurvey<Dim>& survey,
+                                                            const Mesh<Dim, Space>& mesh,
+                                                            EdgeSurvey<Dim, Space>& survey,
                                                             double short_edge, std::uint32_t after);
 
   // ---- Plan: the shortest edge that no rule refuses. Reads only. ----
@@ -56,7 +56,7 @@ class Coarsen {
   // ---- Apply: stretch or remove own elements, hold and change lists, wake neighbours with a short
   // edge. Only `kept` gets neighbours that it did not have, so it waits for the next round. ----
   void apply(VertexId, const Plan& plan, auto& commit) {
-    collapse(plan, SharedLists<Dim>(mesh_, deferred_ ? &*deferred_ : nullptr));
+    collapse(plan, SharedLists<Dim, Space>(mesh_, deferred_ ? &*deferred_ : nullptr));
     for (const VertexId v : plan.short_edge_vertices) commit.wake(v);
     if (mesh_.kind_of[plan.kept].class_dimension != 0) commit.postpone(plan.kept);
   }
@@ -93,12 +93,12 @@ class Coarsen {
   bool joins_rim(const Plan& plan, ElementId element, std::size_t facet) const;
   void note_short_edges(Plan& plan, const Ring& ring) const;
 
-  void collapse(const Plan& plan, const SharedLists<Dim>& lists);
-  void remove_element(ElementId element, const Plan& plan, const SharedLists<Dim>& lists);
+  void collapse(const Plan& plan, const SharedLists<Dim, Space>& lists);
+  void remove_element(ElementId element, const Plan& plan, const SharedLists<Dim, Space>& lists);
   void pass_patch_on(ElementId element, const Plan& plan);
-  void join_links(const Plan& plan, const SharedLists<Dim>& lists);
+  void join_links(const Plan& plan, const SharedLists<Dim, Space>& lists);
 
-  Mesh<Dim>& mesh_;
+  Mesh<Dim, Space>& mesh_;
   Rules rules_;
   std::optional<DeferredLists> deferred_;
 };

@@ -29,8 +29,8 @@ struct EdgeRange {
 
 /// Are all edges that a replacement makes in the range, or at least closer to it than the one that
 /// goes? `gone` are the ends of that edge, or twice the same vertex if no edge goes.
-template <int Dim>
-bool keeps_lengths(const Mesh<Dim>& mesh, const Replacement<Dim>& plan,
+template <int Dim, int Space>
+bool keeps_lengths(const Mesh<Dim, Space>& mesh, const Replacement<Dim>& plan,
                    const std::array<VertexId, 2>& gone, const EdgeRange& range) {
   if (!range.is_bounded()) return true;
   const auto squares = [&](VertexId a, VertexId b) {

@@ -7,21 +7,21 @@ namespace ductile::meshadapt {
 
 namespace {
 
-template <int Dim>
-using Sites = std::array<const Site<Dim>*, Dim + 1>;  ///< those of an element's corners
+template <int Dim, int Space>
+using Sites = std::array<const Site<Space>*, Dim + 1>;  ///< those of an element's corners
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct CornerLanes {
-  std::array<LanesOf<Dim>, Dim + 1> position;
-  std::array<LanesOf<Metric<Dim>::size>, Dim + 1> metric;
+  std::array<LanesOf<Space>, Dim + 1> position;
+  std::array<LanesOf<Metric<Space>::size>, Dim + 1> metric;
 };
 
-template <int Dim>
-[[gnu::always_inline]] inline void read(const std::array<const Site<Dim>*, lane_count>& site,
-                                        LanesOf<Dim>& position,
-                                        LanesOf<Metric<Dim>::size>& metric) {
-  static_assert(sizeof(Site<Dim>) == (Dim + Metric<Dim>::size + 1) * sizeof(double));
-  if constexpr (Dim == 2) {
+template <int Space>
+[[gnu::always_inline]] inline void read(const std::array<const Site<Space>*, lane_count>& site,
+                                        LanesOf<Space>& position,
+                                        LanesOf<Metric<Space>::size>& metric) {
+  static_assert(sizeof(Site<Space>) == (Space + Metric<Space>::size + 1) * sizeof(double));
+  if constexpr (Space == 2) {
     transpose(site, 0, {&position[0], &position[1], &metric[0], &metric[1]});
     transpose(site, 2, {nullptr, nullptr, &metric[2], nullptr});
   } else {
@@ -33,8 +33,8 @@ template <int Dim>
 
 /// Sets the bits of one edge. The edge is a template argument, because otherwise the loop over
 /// lanes would not be vectorised.
-template <int Dim, std::size_t edge>
-[[gnu::always_inline]] inline void compare(const CornerLanes<Dim>& corner, double shorter,
+template <int Dim, int Space, std::size_t edge>
+[[gnu::always_inline]] inline void compare(const CornerLanes<Dim, Space>& corner, double shorter,
                                            double longer, LanesIn<std::uint64_t>& bits) {
   constexpr auto a = static_cast<std::size_t>(Simplex<Dim>::edge[edge][0]);
   constexpr auto b = static_cast<std::size_t>(Simplex<Dim>::edge[edge][1]);
@@ -42,31 +42,31 @@ template <int Dim, std::size_t edge>
                           long_bit = short_bit << Simplex<Dim>::edges;
   const auto& [position, metric] = corner;
   for (std::size_t l = 0; l < lane_count; ++l) {
-    Vector<Dim> along;
-    for (std::size_t i = 0; i < Dim; ++i) along.x[i] = position[b][i][l] - position[a][i][l];
-    const double at_a = squared_length(tensor_at<Dim>(metric[a], l), along);
-    const double at_b = squared_length(tensor_at<Dim>(metric[b], l), along);
+    Vector<Space> along;
+    for (std::size_t i = 0; i < Space; ++i) along.x[i] = position[b][i][l] - position[a][i][l];
+    const double at_a = squared_length(tensor_at<Space>(metric[a], l), along);
+    const double at_b = squared_length(tensor_at<Space>(metric[b], l), along);
     const double greater = at_a > at_b ? at_a : at_b;
     bits[l] |= (at_a * at_b < shorter ? short_bit : 0) | (greater < longer ? 0 : long_bit);
   }
 }
 
 /// The bits of eight elements.
-template <int Dim>
-LanesIn<std::uint64_t> measured(std::span<const Sites<Dim>, lane_count> sites,
-                                const typename EdgeSurvey<Dim>::Limits& limits) {
+template <int Dim, int Space>
+LanesIn<std::uint64_t> measured(std::span<const Sites<Dim, Space>, lane_count> sites,
+                                const typename EdgeSurvey<Dim, Space>::Limits& limits) {
   constexpr double margin = 1e-12;
   const double below = limits.shorter * limits.shorter, above = limits.longer * limits.longer;
   const double shorter = (1 + margin) * (below * below), longer = (1 - margin) * above;
-  CornerLanes<Dim> corner;
+  CornerLanes<Dim, Space> corner;
   for (std::size_t c = 0; c <= Dim; ++c) {
-    std::array<const Site<Dim>*, lane_count> site;
+    std::array<const Site<Space>*, lane_count> site;
     for (std::size_t l = 0; l < lane_count; ++l) site[l] = sites[l][c];
-    read<Dim>(site, corner.position[c], corner.metric[c]);
+    read<Space>(site, corner.position[c], corner.metric[c]);
   }
   LanesIn<std::uint64_t> bits{};
   const auto compare_all = [&]<std::size_t... edge>(std::index_sequence<edge...>) {
-    (compare<Dim, edge>(corner, shorter, longer, bits), ...);
+    (compare<Dim, Space, edge>(corner, shorter, longer, bits), ...);
   };
   compare_all(std::make_index_sequence<Simplex<Dim>::edges>());
   return bits;
@@ -75,17 +75,18 @@ LanesIn<std::uint64_t> measured(std::span<const Sites<Dim>, lane_count> sites,
 }  // namespace
 
 /// Looks up sites ahead, so that lanes do not wait for each other.
-template <int Dim>
-void EdgeSurvey<Dim>::measure(const Mesh<Dim>& mesh, List& list) {
-  std::array<Sites<Dim>, stretch + lane_count> sites;
+template <int Dim, int Space>
+void EdgeSurvey<Dim, Space>::measure(const Mesh<Dim, Space>& mesh, List& list) {
+  std::array<Sites<Dim, Space>, stretch + lane_count> sites;
   for (std::size_t i = 0; i < list.size; ++i) {
     sites[i] = mesh.sites(mesh.corners_of[list.element[i]]);
-    for (const Site<Dim>* site : sites[i]) __builtin_prefetch(site);
+    for (const Site<Space>* site : sites[i]) __builtin_prefetch(site);
   }
   for (std::size_t i = list.size; i % lane_count != 0; ++i) sites[i] = sites[i - 1];
   for (std::size_t i = 0; i < list.size; i += lane_count) {
     const auto bits = run_with(mesh.instructions, [&] {
-      return measured<Dim>(std::span(sites).subspan(i).template first<lane_count>(), limits_);
+      return measured<Dim, Space>(std::span(sites).subspan(i).template first<lane_count>(),
+                                  limits_);
     });
     for (std::size_t l = 0; l < lane_count && i + l < list.size; ++l)
       bits_[list.element[i + l]] = static_cast<Bits>(bits[l] | known);
@@ -93,6 +94,7 @@ void EdgeSurvey<Dim>::measure(const Mesh<Dim>& mesh, List& list) {
 }
 
 template class EdgeSurvey<2>;
+template class EdgeSurvey<2, 3>;
 template class EdgeSurvey<3>;
 
 }  // namespace ductile::meshadapt

@@ -17,7 +17,7 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class EdgeSurvey {
  public:
   /// Edges between the limits are certain to be neither short nor long. There is a margin, because
@@ -45,7 +45,7 @@ class EdgeSurvey {
   /// Measures wanted elements whose lengths are unknown or stale. All that have changed since the
   /// last call must be wanted.
   /// Thread safety: one caller; runs on the executor.
-  void renew(const runtime::Executor& executor, const Mesh<Dim>& mesh, auto&& wanted) {
+  void renew(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh, auto&& wanted) {
     runtime::grow_filled(executor, bits_, mesh.element_slots(), 0);
     const auto measure_wanted = [&](std::size_t, std::size_t begin, std::size_t end) {
       const auto unknown = [&](std::size_t e) {
@@ -68,10 +68,10 @@ class EdgeSurvey {
   /// Call visit(element, edge) for edges of a stretch of elements that may be shorter than the one
   /// limit, or longer than the other. Elements that renew() did not want lately are judged by their
   /// last measurement.
-  void visit_shorter(const Mesh<Dim>& mesh, std::size_t begin, auto&& visit) const {
+  void visit_shorter(const Mesh<Dim, Space>& mesh, std::size_t begin, auto&& visit) const {
     visit_bits(mesh, begin, 0, visit);
   }
-  void visit_longer(const Mesh<Dim>& mesh, std::size_t begin, auto&& visit) const {
+  void visit_longer(const Mesh<Dim, Space>& mesh, std::size_t begin, auto&& visit) const {
     visit_bits(mesh, begin, edges, visit);
   }
 
@@ -101,7 +101,8 @@ class EdgeSurvey {
     return true;
   }
 
-  void visit_bits(const Mesh<Dim>& mesh, std::size_t begin, std::size_t shift, auto&& visit) const {
+  void visit_bits(const Mesh<Dim, Space>& mesh, std::size_t begin, std::size_t shift,
+                  auto&& visit) const {
     const std::size_t end = std::min(mesh.element_slots(), begin + stretch);
     const auto mask = static_cast<Bits>(all << shift);
     List list;
@@ -115,7 +116,7 @@ class EdgeSurvey {
     }
   }
 
-  void measure(const Mesh<Dim>& mesh, List& list);
+  void measure(const Mesh<Dim, Space>& mesh, List& list);
 
   runtime::UnsetVector<Bits> bits_;  // [element], of no use where it is gone
   Limits limits_;
@@ -123,6 +124,7 @@ class EdgeSurvey {
 };
 
 extern template class EdgeSurvey<2>;
+extern template class EdgeSurvey<2, 3>;
 extern template class EdgeSurvey<3>;
 
 }  // namespace ductile::meshadapt

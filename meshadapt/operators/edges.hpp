@@ -21,10 +21,10 @@ namespace ductile::meshadapt {
 /// The marked vertices that have an edge shorter than a limit, which is not above that of the
 /// survey. All corners of elements changed since the survey was last used are marked.
 /// Thread safety: one caller; runs on the executor.
-template <int Dim>
+template <int Dim, int Space>
 runtime::UnsetVector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
-                                                            const Mesh<Dim>& mesh,
-                                                            EdgeSurvey<Dim>& survey,
+                                                            const Mesh<Dim, Space>& mesh,
+                                                            EdgeSurvey<Dim, Space>& survey,
                                                             std::span<const std::uint8_t> marked,
                                                             double limit) {
   auto ends = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
@@ -45,7 +45,8 @@ runtime::UnsetVector<std::uint8_t> mark_ends_of_short_edges(const runtime::Execu
   const auto look = [&](std::size_t, std::size_t begin, std::size_t) {
     survey.visit_shorter(mesh, begin, mark);
   };
-  runtime::parallel_for_blocks(executor, mesh.element_slots(), EdgeSurvey<Dim>::stretch, look, {});
+  runtime::parallel_for_blocks(executor, mesh.element_slots(), EdgeSurvey<Dim, Space>::stretch,
+                               look, {});
   return ends;
 }
 
@@ -71,10 +72,11 @@ inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t edge,
   return other == none || mesh.changed_at[other] <= after;
 }
 
-/// In 3D the first.
-inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t edge,
-                       std::uint32_t after) {
-  const auto [p, q] = ends_of_edge<3>(mesh.corners_of[element], edge);
+/// In space the first.
+template <int Dim>
+bool stands_for(const Mesh<Dim, 3>& mesh, ElementId element, std::size_t edge,
+                std::uint32_t after) {
+  const auto [p, q] = ends_of_edge<Dim>(mesh.corners_of[element], edge);
   const auto of_p = mesh.elements_of.of(p), of_q = mesh.elements_of.of(q);
   const bool fewer = of_q.size() < of_p.size();
   const VertexId other = fewer ? p : q;
@@ -92,12 +94,13 @@ inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t edge,
 /// element changed after an epoch, each once; in an order that does not depend on threads. The
 /// epoch is not later than when the survey was last used.
 /// Thread safety: one caller; runs on the executor.
-template <int Dim>
-runtime::UnsetVector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                          EdgeSurvey<Dim>& survey, double limit,
+template <int Dim, int Space>
+runtime::UnsetVector<LongEdge> long_edges(const runtime::Executor& executor,
+                                          const Mesh<Dim, Space>& mesh,
+                                          EdgeSurvey<Dim, Space>& survey, double limit,
                                           std::uint32_t after) {
   survey.renew(executor, mesh, [&](ElementId e) { return mesh.changed_at[e] > after; });
-  constexpr std::size_t stretch = EdgeSurvey<Dim>::stretch;
+  constexpr std::size_t stretch = EdgeSurvey<Dim, Space>::stretch;
   const auto find = [&](std::size_t i, auto&& append) {
     survey.visit_longer(mesh, i * stretch, [&](ElementId e, std::size_t k) {
       if (mesh.changed_at[e] <= after || !stands_for(mesh, e, k, after)) return;

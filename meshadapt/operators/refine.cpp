@@ -25,8 +25,8 @@ constexpr std::size_t few_to_look_at = 16;
 
 }  // namespace
 
-template <int Dim>
-runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
+template <int Dim, int Space>
+runtime::RoundsReport Refine<Dim, Space>::run(runtime::UnsetVector<LongEdge> edges) {
   edges_ = std::move(edges);
   report_.planned = edges_.size();
   if (edges_.empty()) return report_;
@@ -47,8 +47,9 @@ runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
 }
 
 /// Prefetches the points of elements soon after the one at this place.
-template <int Dim>
-[[gnu::always_inline]] inline void Refine<Dim>::prefetch_points_after(std::size_t place) const {
+template <int Dim, int Space>
+[[gnu::always_inline]] inline void Refine<Dim, Space>::prefetch_points_after(
+    std::size_t place) const {
   constexpr std::size_t ahead = 3;
   if (place + 2 * ahead < elements_.size())
     __builtin_prefetch(&mesh_.corners_of[elements_[place + 2 * ahead]]);
@@ -60,8 +61,8 @@ template <int Dim>
 
 /// As if edges were split one after the other, the longest first: an edge is refused only when it
 /// is known which edges before it are refused.
-template <int Dim>
-void Refine<Dim>::refuse() {
+template <int Dim, int Space>
+void Refine<Dim, Space>::refuse() {
   const auto look_ahead = [&](std::size_t place) {
     prefetch_points_after(place);
     look(place);
@@ -81,8 +82,8 @@ void Refine<Dim>::refuse() {
 }
 
 /// Refuses the edges that elements ask to refuse, except where this may still change; returns them.
-template <int Dim>
-runtime::UnsetVector<std::uint32_t> Refine<Dim>::take_refused() {
+template <int Dim, int Space>
+runtime::UnsetVector<std::uint32_t> Refine<Dim, Space>::take_refused() {
   ++round_;
   using runtime::parallel_collect;
   const auto find_asked = [&](std::size_t i, auto&& append) {
@@ -106,8 +107,8 @@ runtime::UnsetVector<std::uint32_t> Refine<Dim>::take_refused() {
 }
 
 /// Does an element still ask to refuse this edge?
-template <int Dim>
-bool Refine<Dim>::is_asked(std::uint32_t number) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::is_asked(std::uint32_t number) const {
   bool any = false;
   visit_cuts(number, [&](std::size_t place) {
     for (std::size_t k = 0; k < cuts_[place].split.size(); ++k)
@@ -118,8 +119,8 @@ bool Refine<Dim>::is_asked(std::uint32_t number) const {
 
 /// Is this the first edge that the elements around it ask to refuse? Their other requests may
 /// depend on it.
-template <int Dim>
-bool Refine<Dim>::goes_first(std::uint32_t number) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::goes_first(std::uint32_t number) const {
   bool first = true;
   visit_cuts(number, [&](std::size_t place) {
     for (const std::uint32_t split : cuts_[place].split)
@@ -130,24 +131,24 @@ bool Refine<Dim>::goes_first(std::uint32_t number) const {
 }
 
 /// Visits the places of the elements around an edge.
-template <int Dim>
-void Refine<Dim>::visit_cuts(std::uint32_t number, auto&& visit) const {
+template <int Dim, int Space>
+void Refine<Dim, Space>::visit_cuts(std::uint32_t number, auto&& visit) const {
   for (std::size_t i = around_begin_[number]; i < around_.size() && around_[i].number == number;
        ++i)
     visit(around_[i].place);
 }
 
 /// An element that several edges refused in this round cut looks again once.
-template <int Dim>
-bool Refine<Dim>::first_refused_of(const Cuts& cuts, std::uint32_t number) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::first_refused_of(const Cuts& cuts, std::uint32_t number) const {
   for (const std::uint32_t split : cuts.split)
     if (split != 0 && split - 1 < number && refused_in_[split - 1] == round_) return false;
   return true;
 }
 
 /// Tries to cut an element, and asks to refuse the edges along which it may not be cut.
-template <int Dim>
-void Refine<Dim>::look(std::size_t place) {
+template <int Dim, int Space>
+void Refine<Dim, Space>::look(std::size_t place) {
   const ElementId element = elements_[place];
   Cuts& cuts = cuts_[place];
   const Order order = order_of(cuts);
@@ -165,8 +166,8 @@ void Refine<Dim>::look(std::size_t place) {
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
 }
 
-template <int Dim>
-auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
+template <int Dim, int Space>
+auto Refine<Dim, Space>::order_of(const Cuts& cuts) const -> Order {
   Order order;
   for (std::size_t k = 0; k < cuts.split.size(); ++k) {
     if (cuts.split[k] == 0 || !is_split(cuts.split[k] - 1)) continue;
@@ -178,8 +179,8 @@ auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
   return order;
 }
 
-template <int Dim>
-auto Refine<Dim>::points_of(ElementId element, const Cuts& cuts) const -> Points {
+template <int Dim, int Space>
+auto Refine<Dim, Space>::points_of(ElementId element, const Cuts& cuts) const -> Points {
   Points points{element, {}, {}};
   for (std::size_t i = 0; i <= Dim; ++i)
     points.site[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
@@ -188,25 +189,26 @@ auto Refine<Dim>::points_of(ElementId element, const Cuts& cuts) const -> Points
   return points;
 }
 
-template <int Dim>
-static std::array<const Site<Dim>*, Dim + 1> sites_of(
-    const Piece<Dim>& piece, const std::array<const Site<Dim>*, points_of_cut<Dim>>& points) {
-  std::array<const Site<Dim>*, Dim + 1> sites;
+template <int Dim, int Space>
+static std::array<const Site<Space>*, Dim + 1> sites_of(
+    const Piece<Dim>& piece, const std::array<const Site<Space>*, points_of_cut<Dim>>& points) {
+  std::array<const Site<Space>*, Dim + 1> sites;
   for (std::size_t i = 0; i <= Dim; ++i) sites[i] = points[piece.corners[i]];
   return sites;
 }
 
 /// Cuts an element into pieces that every rule accepts, whatever the element was like; returns
 /// false if one of them is not.
-template <int Dim>
-bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& points) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::cut_freely(Cuts& cuts, const Order& order, const Points& points) const {
   Pieces<Dim> pieces;
   for (std::size_t i = 0; i < order.size; ++i) {
     if (!keeps_distance(pieces, order.edge[i], points)) return false;
     pieces.cut(order.edge[i]);
   }
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    cuts.quality[p] = static_cast<float>(quality<Dim>(sites_of<Dim>(pieces[p], points.site)));
+    cuts.quality[p] =
+        static_cast<float>(quality<Dim>(sites_of<Dim, Space>(pieces[p], points.site)));
     if (!(cuts.quality[p] >= rules_.accepted_quality)) return false;
   }
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
@@ -215,15 +217,15 @@ bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& point
 
 /// Cuts pieces along one edge, unless the rules refuse an edge or a quality that this makes; then
 /// the pieces stay as they are.
-template <int Dim>
-bool Refine<Dim>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edge,
-                      const Split& split, const Points& points) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edge,
+                             const Split& split, const Points& points) const {
   if (!keeps_distance(pieces, edge, points)) return false;
   Pieces<Dim> halves = pieces;
   halves.cut(edge);
   Qualities after = qualities;
   const auto is_fine = [&](std::size_t half, double before) {
-    const double value = quality<Dim>(sites_of<Dim>(halves[half], points.site));
+    const double value = quality<Dim>(sites_of<Dim, Space>(halves[half], points.site));
     after[half] = static_cast<float>(value);
     return value > 0 && value >= least_quality(std::min<double>(before, split.worst_around), split);
   };
@@ -238,11 +240,11 @@ bool Refine<Dim>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edg
 }
 
 /// Is the middle of an edge far enough from the other corners of the pieces that it cuts?
-template <int Dim>
-bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
-                                 const Points& points) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
+                                        const Points& points) const {
   const auto [a, b] = Simplex<Dim>::edge[edge];
-  const Site<Dim>& middle = *points.site[middle_of<Dim>(edge)];
+  const Site<Space>& middle = *points.site[middle_of<Dim>(edge)];
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     if (!pieces.has_edge(p, edge)) continue;
     for (const PointOfCut c : pieces[p].corners)
@@ -255,9 +257,9 @@ bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
 
 /// Does a corner of a piece lie on another side of a layer, or of a strip of a patch, than the edge
 /// that is cut? Their distance follows from the layer's thickness, and no collapse may join them.
-template <int Dim>
-bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
-                            const Points& points) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
+                                   const Points& points) const {
   const auto class_of = [&](PointOfCut point) -> int {
     return point > Dim ? points.class_of_middle[point - Dim - 1U]
                        : mesh_.kind_of[mesh_.corners_of[points.element][point]].class_dimension;
@@ -275,8 +277,8 @@ bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCu
 }
 
 /// Along overlong edges the metric changes so much over an element that its quality means little.
-template <int Dim>
-double Refine<Dim>::least_quality(double before, const Split& split) const {
+template <int Dim, int Space>
+double Refine<Dim, Space>::least_quality(double before, const Split& split) const {
   if (before < rules_.poor_quality)
     return split.in_layer ? rules_.layer_split_keeps * before : before;
   const double excess = std::max(1.0, split.length / rules_.overlong_edge);
@@ -284,6 +286,7 @@ double Refine<Dim>::least_quality(double before, const Split& split) const {
 }
 
 template class Refine<2>;
+template class Refine<2, 3>;
 template class Refine<3>;
 
 }  // namespace ductile::meshadapt

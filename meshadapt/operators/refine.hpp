@@ -23,11 +23,11 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Refine {
  public:
-  Refine(const runtime::Executor& executor, Mesh<Dim>& mesh, const Background<Dim>& background,
-         const Rules& rules)
+  Refine(const runtime::Executor& executor, Mesh<Dim, Space>& mesh,
+         const Background<Dim, Space>& background, const Rules& rules)
       : executor_(executor), mesh_(mesh), background_(background), rules_(rules) {}
 
   /// Rule: no edge of what is required is split. The shell is that of the edge.
@@ -57,7 +57,7 @@ class Refine {
  private:
   /// The planned split of a long edge; valid once the new vertex is located.
   struct Split {
-    Site<Dim> site;  // of the new vertex
+    Site<Space> site;  // of the new vertex
     ElementId host;
     std::uint32_t entity;  // patch or curve that the edge lies on, or 0
     std::int32_t reference;
@@ -86,7 +86,7 @@ class Refine {
   /// An element that is cut, and where its corners and the middles of its edges are.
   struct Points {
     ElementId element;
-    std::array<const Site<Dim>*, points_of_cut<Dim>> site;
+    std::array<const Site<Space>*, points_of_cut<Dim>> site;
     std::array<std::uint8_t, Simplex<Dim>::edges> class_of_middle;  // dimension of the class
 
     void set_middle(std::size_t edge, const Split& split) {
@@ -142,8 +142,8 @@ class Refine {
   VertexId vertex_of(std::uint32_t number) const { return first_vertex_ + place_of_[number]; }
 
   const runtime::Executor& executor_;
-  Mesh<Dim>& mesh_;
-  const Background<Dim>& background_;
+  Mesh<Dim, Space>& mesh_;
+  const Background<Dim, Space>& background_;
   Rules rules_;
   runtime::RoundsReport report_;
 

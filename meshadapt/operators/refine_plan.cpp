@@ -48,7 +48,7 @@ std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
 
 /// Square of twice the metric area of the triangle that two vectors span.
 template <int Dim>
-double squared_area(const Metric<Dim>& metric, const Vector<Dim>& u, const Vector<Dim>& v) {
+double area_squared(const Metric<Dim>& metric, const Vector<Dim>& u, const Vector<Dim>& v) {
   const double uu = squared_length(metric, u), vv = squared_length(metric, v);
   const double uv = (uu + vv - squared_length(metric, u - v)) / 2;
   return uu * vv - uv * uv;
@@ -60,11 +60,12 @@ double least_height_of_triangle(const std::array<Vector<Dim>, 3>& p, const Metri
   double longest = 0;
   for (std::size_t i = 0; i < 3; ++i)
     longest = std::max(longest, squared_length(metric, p[(i + 1) % 3] - p[i]));
-  return std::sqrt(std::max(0.0, squared_area(metric, p[1] - p[0], p[2] - p[0])) / longest);
+  return std::sqrt(std::max(0.0, area_squared(metric, p[1] - p[0], p[2] - p[0])) / longest);
 }
 
 /// Metric length of the least height of an element.
-double least_height(const std::array<Vector<2>, 3>& p, const Site<2>& judge) {
+template <int Space>
+double least_height(const std::array<Vector<Space>, 3>& p, const Site<Space>& judge) {
   return least_height_of_triangle(p, judge.metric);
 }
 double least_height(const std::array<Vector<3>, 4>& p, const Site<3>& judge) {
@@ -72,23 +73,42 @@ double least_height(const std::array<Vector<3>, 4>& p, const Site<3>& judge) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector<3>& origin = p[(i + 1) % 4];
     largest = std::max(
-        largest, squared_area(judge.metric, p[(i + 2) % 4] - origin, p[(i + 3) % 4] - origin));
+        largest, area_squared(judge.metric, p[(i + 2) % 4] - origin, p[(i + 3) % 4] - origin));
   }
   return metric_volume<3>(certain_determinant<3>(p), judge.scale) / std::sqrt(largest);
 }
 
-template <int Dim, std::size_t n>
-std::array<Vector<Dim>, n> positions_of(const Mesh<Dim>& mesh,
-                                        const std::array<VertexId, n>& vertices) {
-  std::array<Vector<Dim>, n> positions;
+template <int Dim, int Space, std::size_t n>
+std::array<Vector<Space>, n> positions_of(const Mesh<Dim, Space>& mesh,
+                                          const std::array<VertexId, n>& vertices) {
+  std::array<Vector<Space>, n> positions;
   for (std::size_t i = 0; i < n; ++i) positions[i] = mesh.site_of[vertices[i]].position;
   return positions;
 }
 
+/// How thick a layer is at an element that spans it, in the metric of a site. That of a surface is
+/// measured from its sides: facets of CAD are needles from one rim to the other.
+template <int Dim>
+double thickness_at(const Mesh<Dim>& mesh, ElementId element, const Site<Dim>& judge) {
+  return least_height(positions_of(mesh, mesh.corners_of[element]), judge);
+}
+double thickness_at(const Mesh<2, 3>& mesh, ElementId element, const Site<3>& judge) {
+  const auto p = positions_of(mesh, mesh.corners_of[element]);
+  const double area =
+      std::sqrt(std::max(0.0, area_squared(judge.metric, p[1] - p[0], p[2] - p[0])));
+  double thickness = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i)
+    if (mesh.patches_of[element][i] != 0)
+      thickness =
+          std::min(thickness,
+                   area / std::sqrt(squared_length(judge.metric, p[(i + 2) % 3] - p[(i + 1) % 3])));
+  return std::isinf(thickness) ? least_height(p, judge) : thickness;
+}
+
 }  // namespace
 
-template <int Dim>
-bool Refine<Dim>::splits(const LongEdge& edge) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::splits(const LongEdge& edge) const {
   Split split;
   Shell shell;
   shell_of(mesh_, edge.a, edge.b, shell);
@@ -105,8 +125,9 @@ bool Refine<Dim>::splits(const LongEdge& edge) const {
 }
 
 /// Prefetches the surroundings of edges soon after this one.
-template <int Dim>
-[[gnu::always_inline]] inline void Refine<Dim>::prefetch_shells_after(std::size_t number) const {
+template <int Dim, int Space>
+[[gnu::always_inline]] inline void Refine<Dim, Space>::prefetch_shells_after(
+    std::size_t number) const {
   for (const int stage : {2, 1}) {
     const std::size_t ahead = number + 3 * static_cast<std::size_t>(stage);
     if (ahead >= edges_.size()) continue;
@@ -124,8 +145,8 @@ template <int Dim>
 }
 
 /// Locates the new vertices, and notes which edges cut which elements.
-template <int Dim>
-void Refine<Dim>::plan() {
+template <int Dim, int Space>
+void Refine<Dim, Space>::plan() {
   runtime::FreshMemory fresh;
   splits_.resize_for_overwrite(edges_.size(), fresh);
   fresh.touch(executor_);
@@ -161,8 +182,8 @@ void Refine<Dim>::plan() {
 
 /// Notes in the elements of a block of around_ which of their edges are split. Prefetches no
 /// further than the block, because other threads may be changing the other blocks.
-template <int Dim>
-void Refine<Dim>::note_splits(std::size_t begin, std::size_t end) {
+template <int Dim, int Space>
+void Refine<Dim, Space>::note_splits(std::size_t begin, std::size_t end) {
   std::array<ElementId, noted_together> elements;
   for (std::size_t i = begin; i < end; ++i) {
     elements[i - begin] = std::exchange(around_[i].place, elements_.place_of(around_[i].place));
@@ -180,16 +201,16 @@ void Refine<Dim>::note_splits(std::size_t begin, std::size_t end) {
 }
 
 /// Returns false, with `split` incomplete, if the edge itself or its place is refused.
-template <int Dim>
-bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::locate(const LongEdge& edge, const Shell& shell, Split& split) const {
   if (!may_split(edge, shell)) return false;
-  const Site<Dim>& a = mesh_.site_of[edge.a];
-  const Site<Dim>& b = mesh_.site_of[edge.b];
+  const Site<Space>& a = mesh_.site_of[edge.a];
+  const Site<Space>& b = mesh_.site_of[edge.b];
   // Up to 5 % off the middle: otherwise a regular mesh may become a regular mesh of worse
   // qualities, in which no single change is an improvement.
   const double chance = runtime::mix32(edge.a * 31 + edge.b) * (2.0 / 4294967296.0) - 1;
   const double t = metric_middle(a, b) + 0.05 * chance;
-  const Vector<Dim> position = (1 - t) * a.position + t * b.position;
+  const Vector<Space> position = (1 - t) * a.position + t * b.position;
   const auto sample = background_.sample(position, mesh_.host_of[t < 0.5 ? edge.a : edge.b]);
   split.site = make_site(position, sample.metric);
   split.host = sample.host;
@@ -202,8 +223,8 @@ bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split)
 }
 
 /// Required elements, facets and edges stay as they are.
-template <int Dim>
-bool Refine<Dim>::may_split(const LongEdge& edge, const Shell& shell) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::may_split(const LongEdge& edge, const Shell& shell) const {
   for (const ElementId e : shell) {
     if (mesh_.required_element(e)) return false;
     for (std::size_t i = 0; i <= Dim; ++i) {
@@ -220,8 +241,8 @@ bool Refine<Dim>::may_split(const LongEdge& edge, const Shell& shell) const {
   return true;
 }
 
-template <int Dim>
-void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& split) const {
+template <int Dim, int Space>
+void Refine<Dim, Space>::classify(const LongEdge& edge, const Shell& shell, Split& split) const {
   split.kind = {.class_dimension = Dim};
   split.entity = 0;
   split.length = edge.length;
@@ -253,8 +274,8 @@ void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& spli
 }
 
 /// Does an element reach from one side of a layer to the other? None of its corners is inside.
-template <int Dim>
-bool Refine<Dim>::spans_layer(ElementId element) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::spans_layer(ElementId element) const {
   const Corners<Dim>& corners = mesh_.corners_of[element];
   return std::none_of(corners.begin(), corners.end(),
                       [&](VertexId v) { return mesh_.kind_of[v].class_dimension == Dim; });
@@ -263,9 +284,9 @@ bool Refine<Dim>::spans_layer(ElementId element) const {
 /// Does an edge lead from one side of a thin layer to the other, or of a thin strip of a patch? A
 /// vertex inside would be in the way of splits of the sides, after which swaps make the edge
 /// shorter.
-template <int Dim>
-bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
-                                      const Split& split) const {
+template <int Dim, int Space>
+bool Refine<Dim, Space>::leads_through_layer(const LongEdge& edge, const Shell& shell,
+                                             const Split& split) const {
   const int inside = split.kind.class_dimension;
   const auto on_side = [&](VertexId v) { return mesh_.kind_of[v].class_dimension < inside; };
   if (inside < 2 || !on_side(edge.a) || !on_side(edge.b)) return false;
@@ -273,7 +294,7 @@ bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
     const Corners<Dim>& corners = mesh_.corners_of[e];
     if (inside == Dim)
       return std::all_of(corners.begin(), corners.end(), on_side) &&
-             least_height(positions_of(mesh_, corners), split.site) < rules_.short_edge;
+             thickness_at(mesh_, e, split.site) < rules_.short_edge;
     for (std::size_t i = 0; i <= Dim; ++i) {
       if (mesh_.patches_of[e][i] == 0 || corners[i] == edge.a || corners[i] == edge.b) continue;
       const auto facet = facet_of<Dim>(corners, static_cast<int>(i));
@@ -288,10 +309,13 @@ bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
 }
 
 template bool Refine<2>::splits(const LongEdge&) const;
+template bool Refine<2, 3>::splits(const LongEdge&) const;
 template bool Refine<3>::splits(const LongEdge&) const;
 template bool Refine<2>::may_split(const LongEdge&, const Shell&) const;
+template bool Refine<2, 3>::may_split(const LongEdge&, const Shell&) const;
 template bool Refine<3>::may_split(const LongEdge&, const Shell&) const;
 template void Refine<2>::plan();
+template void Refine<2, 3>::plan();
 template void Refine<3>::plan();
 
 }  // namespace ductile::meshadapt

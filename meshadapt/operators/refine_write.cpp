@@ -22,8 +22,8 @@ using runtime::with;
 /// With more edges to split than this share of the number of elements, lists are left stale.
 constexpr double many = 0.05;
 
-template <int Dim>
-void Refine<Dim>::number() {
+template <int Dim, int Space>
+void Refine<Dim, Space>::number() {
   place_of_ = make_filled<std::uint32_t>(executor_, edges_.size());
   first_piece_ = make_filled<std::uint32_t>(executor_, elements_.size());
   parallel_for(
@@ -43,8 +43,8 @@ void Refine<Dim>::number() {
 
 /// Throws if there are not numbers for all new elements, which first_piece_ still counts one by
 /// one.
-template <int Dim>
-void Refine<Dim>::expect_countable() const {
+template <int Dim, int Space>
+void Refine<Dim, Space>::expect_countable() const {
   constexpr std::size_t most_pieces = 7;  // beside the first
   std::size_t end = std::size_t{first_element_} + most_pieces * elements_.size();
   if (end < none) return;
@@ -56,8 +56,8 @@ void Refine<Dim>::expect_countable() const {
 
 /// Makes what is numbered, and brings the lists of vertices up to date change by change, unless
 /// there is so much of it that to make all lists anew takes less.
-template <int Dim>
-void Refine<Dim>::grow() {
+template <int Dim, int Space>
+void Refine<Dim, Space>::grow() {
   lists_are_stale_ = !defers_all_lists_ && static_cast<double>(report_.applied) >
                                                many * static_cast<double>(first_element_);
   DeferredLists deferred(executor_);
@@ -86,8 +86,8 @@ void Refine<Dim>::grow() {
   report_.committed = commit_lists(mesh_, deferred);
 }
 
-template <int Dim>
-void Refine<Dim>::write_vertex(std::uint32_t number) {
+template <int Dim, int Space>
+void Refine<Dim, Space>::write_vertex(std::uint32_t number) {
   const Split& split = splits_[number];
   const VertexId v = vertex_of(number);
   mesh_.site_of[v] = split.site;
@@ -99,8 +99,8 @@ void Refine<Dim>::write_vertex(std::uint32_t number) {
 
 /// The parts of a curve that is split: each end is linked to the middle, and no longer to the other
 /// end.
-template <int Dim>
-void Refine<Dim>::write_links(std::uint32_t number, auto&& defer) {
+template <int Dim, int Space>
+void Refine<Dim, Space>::write_links(std::uint32_t number, auto&& defer) {
   const Split& split = splits_[number];
   if (split.kind.class_dimension != 1) return;
   using Kind = ListChange::Kind;
@@ -114,8 +114,8 @@ void Refine<Dim>::write_links(std::uint32_t number, auto&& defer) {
 }
 
 /// The first piece keeps the element's number.
-template <int Dim>
-void Refine<Dim>::write_pieces(std::size_t place, auto&& defer) {
+template <int Dim, int Space>
+void Refine<Dim, Space>::write_pieces(std::size_t place, auto&& defer) {
   const ElementId element = elements_[place];
   const Cuts& cuts = cuts_[place];
   if (cuts.pieces == 1) return;
@@ -148,8 +148,10 @@ void Refine<Dim>::write_pieces(std::size_t place, auto&& defer) {
 }
 
 template void Refine<2>::number();
+template void Refine<2, 3>::number();
 template void Refine<3>::number();
 template void Refine<2>::grow();
+template void Refine<2, 3>::grow();
 template void Refine<3>::grow();
 
 }  // namespace ductile::meshadapt

@@ -15,7 +15,7 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class RemainingWork {
  public:
   static constexpr double poor = 0.3;  ///< mean ratio of elements that are moved for their sake
@@ -30,25 +30,25 @@ class RemainingWork {
   };
 
   /// Thread safety: one caller; runs on the executor, as all of its functions do.
-  RemainingWork(const runtime::Executor& executor, Mesh<Dim>& mesh,
-                const Background<Dim>& background, const Settings& settings)
+  RemainingWork(const runtime::Executor& executor, Mesh<Dim, Space>& mesh,
+                const Background<Dim, Space>& background, const Settings& settings)
       : executor_(executor), mesh_(mesh), background_(background), settings_(settings) {}
 
   /// Collapses, splits, swaps and moves of poor elements; nothing but collapses and splits if these
   /// are not few, and then not all of them. The survey is one of all edges out of the range.
-  std::size_t count(EdgeSurvey<Dim>& survey);
+  std::size_t count(EdgeSurvey<Dim, Space>& survey);
 
   /// Marks the poor elements found as changed, so that the kernels look at them.
   void touch_poor();
 
  private:
-  std::size_t changes_of_lengths(EdgeSurvey<Dim>& survey) const;
-  bool is_raised(const Smooth<Dim>& smoothing, VertexId vertex) const;
+  std::size_t changes_of_lengths(EdgeSurvey<Dim, Space>& survey) const;
+  bool is_raised(const Smooth<Dim, Space>& smoothing, VertexId vertex) const;
   runtime::UnsetVector<VertexId> raised() const;
 
   const runtime::Executor& executor_;
-  Mesh<Dim>& mesh_;
-  const Background<Dim>& background_;
+  Mesh<Dim, Space>& mesh_;
+  const Background<Dim, Space>& background_;
   Settings settings_;
   runtime::UnsetVector<VertexId> raised_;
 };

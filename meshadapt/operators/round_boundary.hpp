@@ -11,10 +11,11 @@ namespace ductile::meshadapt {
 /// precisely as the input, on their plane or line but for that, if mesh.rounding is set. One stays
 /// where it is if elements would get much poorer, or its smooth patch would be left. Thread safety:
 /// one caller; runs on it alone.
-template <int Dim>
-void round_boundary(Mesh<Dim>& mesh);
+template <int Dim, int Space>
+void round_boundary(Mesh<Dim, Space>& mesh);
 
 extern template void round_boundary(Mesh<2>&);
+extern template void round_boundary(Mesh<2, 3>&);
 extern template void round_boundary(Mesh<3>&);
 
 }  // namespace ductile::meshadapt

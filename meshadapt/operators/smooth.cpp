@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/determinant.hpp"
+#include "core/unit.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -33,8 +34,9 @@ Vector<Dim> shortest_in_hull(const Vectors& gradients) {
 }
 
 /// The marked vertices that may move, in order.
-template <int Dim>
-runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+template <int Dim, int Space>
+runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor,
+                                          const Mesh<Dim, Space>& mesh,
                                           const runtime::UnsetVector<std::uint8_t>& marked) {
   const auto find = [&](std::size_t v, auto&& append) {
     if (marked[v] != 0 && mesh.kind_of[v].class_dimension != 0) append(static_cast<VertexId>(v));
@@ -45,16 +47,15 @@ runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor, con
 
 }  // namespace
 
-template <int Dim>
-runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& executor,
-                                                             const Mesh<Dim>& mesh,
-                                                             std::uint32_t after) {
+template <int Dim, int Space>
+runtime::UnsetVector<VertexId> Smooth<Dim, Space>::movable_vertices(
+    const runtime::Executor& executor, const Mesh<Dim, Space>& mesh, std::uint32_t after) {
   return movable_of(executor, mesh, mark_changed(executor, mesh, after));
 }
 
-template <int Dim>
-runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
-    const runtime::Executor& executor, const Mesh<Dim>& mesh, double mean_ratio,
+template <int Dim, int Space>
+runtime::UnsetVector<VertexId> Smooth<Dim, Space>::movable_vertices_of_poor(
+    const runtime::Executor& executor, const Mesh<Dim, Space>& mesh, double mean_ratio,
     std::uint32_t after) {
   const double bound = quality_of_mean_ratio<Dim>(mean_ratio);
   auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
@@ -66,22 +67,22 @@ runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
   return movable_of(executor, mesh, marked);
 }
 
-template <int Dim>
-runtime::UnsetVector<VertexId> Smooth<Dim>::vertices_on_surface(const runtime::Executor& executor,
-                                                                const Mesh<Dim>& mesh,
-                                                                std::uint32_t after) {
+template <int Dim, int Space>
+runtime::UnsetVector<VertexId> Smooth<Dim, Space>::vertices_on_surface(
+    const runtime::Executor& executor, const Mesh<Dim, Space>& mesh, std::uint32_t after) {
   const auto marked = mark_changed(executor, mesh, after);
   const auto find = [&](std::size_t v, auto&& append) {
     const auto vertex = static_cast<VertexId>(v);
-    if (marked[v] != 0 && (on_smooth_patch(mesh, vertex) || on_smooth_curve(mesh, vertex)))
+    if (marked[v] != 0 && (on_smooth_patch(mesh, vertex) || on_smooth_curve(mesh, vertex) ||
+                           (mesh.vertex_alive(vertex) && in_smooth_patch(mesh, vertex))))
       append(vertex);
   };
   return runtime::parallel_collect<VertexId>(executor, marked.size(), find,
                                              runtime::few_nanoseconds.serial_below);
 }
 
-template <int Dim>
-bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::decide(VertexId vertex, Plan& plan) const {
   const auto elements = mesh_.elements_of.of(vertex);
   if (elements.empty() || elements.size() > mesh_.largest_ball) return false;
   if (options_.to_surface) {
@@ -93,7 +94,7 @@ bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
   const auto is_good = [&](ElementId e) { return mesh_.quality_of[e] >= good_enough; };
   if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return false;
   background_.prefetch_corners(mesh_.host_of[vertex]);
-  const VertexBall<Dim> ball(mesh_, vertex);
+  const VertexBall<Dim, Space> ball(mesh_, vertex);
   std::array<Place, 2> places{Place{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()}};
   bool moved = options_.laplacian && relax(vertex, ball, places[0], places[1]);
   Place& best = places[moved ? 1 : 0];
@@ -107,35 +108,48 @@ bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
 }
 
 /// Plans to go there.
-template <int Dim>
-bool Smooth<Dim>::follow(VertexId vertex, const Place& best, Plan& plan) const {
-  const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::follow(VertexId vertex, const Place& best, Plan& plan) const {
+  const Vector<Space> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
   plan = {best.host, best.site, best.qualities, far};
   return true;
 }
 
-/// Is what the vertex may move along known by a function?
-template <int Dim>
-bool Smooth<Dim>::follows_function(VertexId vertex) const {
+/// visit(sheets, number) of the smooth curve or patch that the vertex may move along.
+template <int Dim, int Space>
+auto Smooth<Dim, Space>::visit_sheet(VertexId vertex, auto&& visit) const {
   const std::uint32_t entity = mesh_.entity_of[vertex];
-  return on_smooth_curve(mesh_, vertex)
-             ? mesh_.surface->edges.is_exact(mesh_.curves[entity].sheet)
-             : mesh_.surface->facets.is_exact(mesh_.patches[entity].sheet);
+  if constexpr (Dim < Space) {
+    if (in_smooth_patch(mesh_, vertex))
+      return visit(mesh_.surface->facets, mesh_.regions[region_of(vertex)].sheet);
+    return visit(mesh_.surface->edges, mesh_.patches[entity].sheet);
+  } else {
+    if (on_smooth_curve(mesh_, vertex))
+      return visit(mesh_.surface->edges, mesh_.curves[entity].sheet);
+    return visit(mesh_.surface->facets, mesh_.patches[entity].sheet);
+  }
+}
+
+/// Is what the vertex may move along known by a function?
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::follows_function(VertexId vertex) const {
+  return visit_sheet(
+      vertex, [](const auto& sheets, std::uint32_t sheet) { return sheets.is_exact(sheet); });
 }
 
 /// Goes to the closest point of the surface's model, or towards it, unless it is there.
-template <int Dim>
-bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::settle(VertexId vertex, Place& best) const {
   const double close = follows_function(vertex) ? 1e-10 : 0.01;  // of the tolerance
   constexpr double kept = 0.7;                                   // of the worst quality
-  const Vector<Dim> from = mesh_.site_of[vertex].position;
+  const Vector<Space> from = mesh_.site_of[vertex].position;
   const auto target = stepped(vertex, from, {});
   if (!target) return false;
-  const Vector<Dim> step = *target - from;
+  const Vector<Space> step = *target - from;
   if (norm(step) <= close * mesh_.surface->facets.tolerance()) return false;
   background_.prefetch_corners(mesh_.host_of[vertex]);
-  const VertexBall<Dim> ball(mesh_, vertex);
+  const VertexBall<Dim, Space> ball(mesh_, vertex);
   const Place here{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()};
   for (const double fraction : {1.0, 0.5, 0.25})
     if (place(ball, from + fraction * step, here, {kept * here.score.worst, 0}, best)) return true;
@@ -144,16 +158,16 @@ bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
 
 /// Is it certain that every element around the vertex has a positive volume if it moves there, and
 /// that its facets on patches keep their turn?
-template <int Dim>
-bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) const {
-  const bool on_boundary = mesh_.kind_of[vertex].class_dimension < Dim;
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::keeps_volumes(VertexId vertex, const Vector<Space>& position) const {
+  const bool on_boundary = mesh_.kind_of[vertex].class_dimension < Space;
   for (const ElementId e : mesh_.elements_of.of(vertex)) {
-    std::array<Vector<Dim>, Dim + 1> p;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      const VertexId v = mesh_.corners_of[e][i];
-      p[i] = v == vertex ? position : mesh_.site_of[v].position;
+    const auto p = corners_with(mesh_, e, vertex, position);
+    if constexpr (Dim < Space) {
+      if (!(certain_area(p[0], p[1], p[2]) > 0)) return false;
+    } else {
+      if (!(certain_determinant<Dim>(p) > 0)) return false;
     }
-    if (!(certain_determinant<Dim>(p) > 0)) return false;
     if (on_boundary && !keeps_facets_turned(mesh_, e, vertex, position)) return false;
   }
   return true;
@@ -161,17 +175,18 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
 
 /// Do smooth patches and curves stay close to what they were if the vertex moves there? On its way
 /// to the model of the surface it may leave facets that are not close as they are.
-template <int Dim>
-bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) const {
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::keeps_surface(VertexId vertex, const Vector<Space>& position) const {
   if (!mesh_.surface) return true;
-  if (on_smooth_curve(mesh_, vertex))
-    for (const CurveLink& link : mesh_.links_of.of(vertex))
-      if (!mesh_.surface->edges.cover({mesh_.site_of[link.to].position, position},
-                                      mesh_.curves[link.curve].sheet))
-        return false;
+  if constexpr (Dim == 3)
+    if (on_smooth_curve(mesh_, vertex))
+      for (const CurveLink& link : mesh_.links_of.of(vertex))
+        if (!mesh_.surface->edges.cover({mesh_.site_of[link.to].position, position},
+                                        mesh_.curves[link.curve].sheet))
+          return false;
   const auto elements = mesh_.elements_of.of(vertex);
   return std::all_of(elements.begin(), elements.end(), [&](ElementId e) {
-    const auto keeps = [&](const Vector<Dim>& at) {
+    const auto keeps = [&](const Vector<Space>& at) {
       return meshadapt::keeps_surface(mesh_, e, vertex, at);
     };
     return keeps(position) || (options_.to_surface && !keeps(mesh_.site_of[vertex].position));
@@ -179,12 +194,12 @@ bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) co
 }
 
 /// Do all edges of the vertex stay in the range, or as close to it as they are, if it is here?
-template <int Dim>
-bool Smooth<Dim>::keeps_lengths(VertexId vertex, const Site<Dim>& site) const {
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::keeps_lengths(VertexId vertex, const Site<Space>& site) const {
   if (!options_.range.is_bounded()) return true;
   bool keeps = true;
   visit_neighbours(mesh_, vertex, [&](VertexId v) {
-    const Site<Dim>& other = mesh_.site_of[v];
+    const Site<Space>& other = mesh_.site_of[v];
     const EndSquares edge = end_squares(site, other);
     keeps = keeps && (options_.range.contains(edge) ||
                       options_.range.accepts(edge, end_squares(mesh_.site_of[vertex], other)));
@@ -194,9 +209,9 @@ bool Smooth<Dim>::keeps_lengths(VertexId vertex, const Site<Dim>& site) const {
 
 /// True if a place scores better than a bar; sets `result` to it. The place is first scored with
 /// the metric nearby, which needs no search; a place with positive volumes lies inside the domain.
-template <int Dim>
-bool Smooth<Dim>::place(const VertexBall<Dim>& ball, const Vector<Dim>& position, const Place& near,
-                        const Score& bar, Place& result) const {
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::place(const VertexBall<Dim, Space>& ball, const Vector<Space>& position,
+                               const Place& near, const Score& bar, Place& result) const {
   const auto beats_bar = [&](const Score& score) { return score.worst > 0 && score.sum > bar.sum; };
   if (!beats_bar(ball.score({position, near.site.metric, near.site.scale}, bar.worst)))
     return false;
@@ -205,8 +220,11 @@ bool Smooth<Dim>::place(const VertexBall<Dim>& ball, const Vector<Dim>& position
   result.host = sample.host;
   result.score = ball.score(result.site, bar.worst, result.qualities);
   const auto is_certain = [&] {
-    return mesh_.kind_of[ball.vertex()].class_dimension == Dim &&
-           ball.is_certain(result.score.volume, position);
+    if constexpr (Dim < Space)
+      return false;
+    else
+      return mesh_.kind_of[ball.vertex()].class_dimension == Dim &&
+             ball.is_certain(result.score.volume, position);
   };
   return beats_bar(result.score) && keeps_lengths(ball.vertex(), result.site) &&
          (is_certain() ||
@@ -214,73 +232,107 @@ bool Smooth<Dim>::place(const VertexBall<Dim>& ball, const Vector<Dim>& position
 }
 
 /// Along a curve, where it is smooth between the next vertices on both sides.
-template <int Dim>
-Vector<Dim> Smooth<Dim>::tangent(VertexId vertex) const {
-  if constexpr (Dim == 3) {
-    const Curve& curve = mesh_.curves[mesh_.entity_of[vertex]];
+template <int Dim, int Space>
+Vector<Space> Smooth<Dim, Space>::tangent(VertexId vertex) const {
+  if constexpr (Space == 3) {
+    const std::uint32_t entity = mesh_.entity_of[vertex];
+    const Curve& curve = [&]() -> const Curve& {
+      if constexpr (Dim == 3)
+        return mesh_.curves[entity];
+      else
+        return mesh_.patches[entity];
+    }();
     if (!curve.smooth) return curve.direction;
-    const auto links = mesh_.links_of.of(vertex);
-    const Vector<3> along =
-        mesh_.site_of[links[1].to].position - mesh_.site_of[links[0].to].position;
-    const double length = norm(along);
-    return length > 0 ? (1 / length) * along : Vector<3>{};
+    const auto [before, after] = next_on_curve(vertex);
+    return unit(mesh_.site_of[after].position - mesh_.site_of[before].position);
   }
   return {};
 }
 
-/// The normal of the vertex's patch; if that is smooth, the mean of the facets around the vertex.
-template <int Dim>
-Vector<Dim> Smooth<Dim>::normal(VertexId vertex) const {
-  const PatchId patch = mesh_.entity_of[vertex];
-  if (!mesh_.patches[patch].smooth) return mesh_.patches[patch].normal;
-  const std::uint32_t side = mesh_.region_of[mesh_.elements_of.of(vertex)[0]];
-  Vector<Dim> sum;
+/// The next vertices on both sides along the curve of a vertex.
+template <int Dim, int Space>
+std::array<VertexId, 2> Smooth<Dim, Space>::next_on_curve(VertexId vertex) const {
+  if constexpr (Dim == 3) {
+    const auto links = mesh_.links_of.of(vertex);
+    return {links[0].to, links[1].to};
+  }
+  std::array<VertexId, 2> next{none, none};
   for (const ElementId e : mesh_.elements_of.of(vertex))
     for (std::size_t i = 0; i <= Dim; ++i) {
-      if (mesh_.patches_of[e][i] != patch || mesh_.corners_of[e][i] == vertex) continue;
-      const Facet<Dim> facet = facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i));
-      std::array<Vector<Dim>, Dim> p;
-      for (std::size_t k = 0; k < Dim; ++k) p[k] = mesh_.site_of[facet[k]].position;
-      sum += (mesh_.region_of[e] == side ? 1.0 : -1.0) * facet_normal(p);
+      const auto& corners = mesh_.corners_of[e];
+      if (corners[i] == vertex || mesh_.patches_of[e][i] == 0) continue;
+      const VertexId other =
+          corners[(i + 1) % 3] == vertex ? corners[(i + 2) % 3] : corners[(i + 1) % 3];
+      if (next[0] == none || next[0] == other)
+        next[0] = other;
+      else
+        next[1] = other;
     }
-  const double length = norm(sum);
-  return length > 0 ? (1 / length) * sum : Vector<Dim>{};
+  return next;
+}
+
+/// The normal of the vertex's patch; if that is smooth, the mean of the facets around the vertex.
+template <int Dim, int Space>
+Vector<Space> Smooth<Dim, Space>::normal(VertexId vertex) const {
+  if constexpr (Dim < Space) {
+    const Patch<Space>& patch = mesh_.regions[region_of(vertex)];
+    if (!patch.smooth) return patch.normal;
+    Vector<Space> sum;
+    for (const ElementId e : mesh_.elements_of.of(vertex))
+      sum += facet_normal(corners_with(mesh_, e, none, {}));
+    return unit(sum);
+  } else {
+    const PatchId patch = mesh_.entity_of[vertex];
+    if (!mesh_.patches[patch].smooth) return mesh_.patches[patch].normal;
+    const std::uint32_t side = mesh_.region_of[mesh_.elements_of.of(vertex)[0]];
+    Vector<Space> sum;
+    for (const ElementId e : mesh_.elements_of.of(vertex))
+      for (std::size_t i = 0; i <= Dim; ++i) {
+        if (mesh_.patches_of[e][i] != patch || mesh_.corners_of[e][i] == vertex) continue;
+        const Facet<Dim> facet = facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i));
+        std::array<Vector<Space>, Dim> p;
+        for (std::size_t k = 0; k < Dim; ++k) p[k] = mesh_.site_of[facet[k]].position;
+        sum += (mesh_.region_of[e] == side ? 1.0 : -1.0) * facet_normal(p);
+      }
+    const double length = norm(sum);
+    return length > 0 ? (1 / length) * sum : Vector<Space>{};
+  }
 }
 
 /// The part of a displacement that keeps the vertex on its patch or curve, or along it.
-template <int Dim>
-Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) const {
+template <int Dim, int Space>
+Vector<Space> Smooth<Dim, Space>::allowed(VertexId vertex, Vector<Space> displacement) const {
   const int class_dimension = mesh_.kind_of[vertex].class_dimension;
-  if (class_dimension == Dim) return displacement;
-  if (Dim == 3 && class_dimension == 1) {
-    const Vector<Dim> along = tangent(vertex);
+  if (class_dimension == Space) return displacement;
+  if (Space == 3 && class_dimension == 1) {
+    const Vector<Space> along = tangent(vertex);
     return dot(displacement, along) * along;
   }
   // Twice: what rounding leaves of a displacement that is long across is not little.
-  const Vector<Dim> across = normal(vertex);
+  const Vector<Space> across = normal(vertex);
   displacement -= dot(displacement, across) * across;
   return displacement - dot(displacement, across) * across;
 }
 
 /// The end of a step: if it follows a smooth patch or curve, the closest point of the model of that
 /// patch or curve in the input.
-template <int Dim>
-std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Dim>& from,
-                                                const Vector<Dim>& step) const {
-  const Vector<Dim> to = from + step;
-  const std::uint32_t entity = mesh_.entity_of[vertex];
-  if (on_smooth_curve(mesh_, vertex))
-    return mesh_.surface->edges.closest(to, mesh_.curves[entity].sheet, norm(step));
-  if (on_smooth_patch(mesh_, vertex))
-    return mesh_.surface->facets.closest(to, mesh_.patches[entity].sheet, norm(step));
-  return to;
+template <int Dim, int Space>
+std::optional<Vector<Space>> Smooth<Dim, Space>::stepped(VertexId vertex, const Vector<Space>& from,
+                                                         const Vector<Space>& step) const {
+  const Vector<Space> to = from + step;
+  if (!on_smooth_curve(mesh_, vertex) && !on_smooth_patch(mesh_, vertex) &&
+      !in_smooth_patch(mesh_, vertex))
+    return to;
+  return visit_sheet(vertex, [&](const auto& sheets, std::uint32_t sheet) {
+    return sheets.closest(to, sheet, norm(step));
+  });
 }
 
 /// Goes towards where the elements want it as far as their qualities get better.
-template <int Dim>
-bool Smooth<Dim>::relax(VertexId vertex, const VertexBall<Dim>& ball, const Place& from,
-                        Place& to) const {
-  const Vector<Dim> step = allowed(vertex, ball.mean_pull(from.site));
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::relax(VertexId vertex, const VertexBall<Dim, Space>& ball,
+                               const Place& from, Place& to) const {
+  const Vector<Space> step = allowed(vertex, ball.mean_pull(from.site));
   if (squared_length(from.site.metric, step) < 1e-4) return false;
   const Score bar{std::min(from.score.worst, quality_of_mean_ratio<Dim>(0.7)),
                   from.score.sum * (1 + 1e-4)};
@@ -294,30 +346,30 @@ bool Smooth<Dim>::relax(VertexId vertex, const VertexBall<Dim>& ball, const Plac
 /// A direction in which all of the worst elements get better, or nearly 0 if there is none; or that
 /// in which the harmonic mean of all qualities rises most. It is sought in the space where the
 /// metric is the identity, lest the thin direction hide the others.
-template <int Dim>
-Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const VertexBall<Dim>& ball, Aim aim,
-                                const Place& at) const {
-  const PrincipalAxes<Dim> axes = principal_axes(at.site.metric);
-  Buffer<Vector<Dim>, 16> gradients;
+template <int Dim, int Space>
+Vector<Space> Smooth<Dim, Space>::ascent(VertexId vertex, const VertexBall<Dim, Space>& ball,
+                                         Aim aim, const Place& at) const {
+  const PrincipalAxes<Space> axes = principal_axes(at.site.metric);
+  Buffer<Vector<Space>, 16> gradients;
   ball.visit_qualities(at.site, [&](std::size_t element, double quality) {
     if (aim == Aim::worst && quality > at.score.worst * 1.15 + 0.01) return;
     const double weight = aim == Aim::worst ? 1 : 1 / (quality * quality);
-    const Vector<Dim> free = allowed(vertex, ball.gradient(element, at.site, quality));
-    Vector<Dim> unit;
-    for (int i = 0; i < Dim; ++i) {
+    const Vector<Space> free = allowed(vertex, ball.gradient(element, at.site, quality));
+    Vector<Space> unit;
+    for (int i = 0; i < Space; ++i) {
       const auto k = static_cast<std::size_t>(i);
       unit[i] = weight * dot(free, axes.vector[k]) / std::sqrt(axes.value[k]);
     }
     gradients.push_back(unit);
   });
   if (gradients.empty()) return {};
-  Vector<Dim> unit;
+  Vector<Space> unit;
   if (aim == Aim::worst)
-    unit = shortest_in_hull<Dim>(gradients);
+    unit = shortest_in_hull<Space>(gradients);
   else
-    for (const Vector<Dim>& gradient : gradients) unit += gradient;
-  Vector<Dim> direction;
-  for (int i = 0; i < Dim; ++i) {
+    for (const Vector<Space>& gradient : gradients) unit += gradient;
+  Vector<Space> direction;
+  for (int i = 0; i < Space; ++i) {
     const auto k = static_cast<std::size_t>(i);
     direction += (unit[i] / std::sqrt(axes.value[k])) * axes.vector[k];
   }
@@ -325,23 +377,24 @@ Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const VertexBall<Dim>& ball, Ai
 }
 
 /// The sum of the inverse qualities around the vertex if it were at this site.
-template <int Dim>
-double Smooth<Dim>::inverse_qualities(const VertexBall<Dim>& ball, const Site<Dim>& site) {
+template <int Dim, int Space>
+double Smooth<Dim, Space>::inverse_qualities(const VertexBall<Dim, Space>& ball,
+                                             const Site<Space>& site) {
   double sum = 0;
   ball.visit_qualities(site, [&](std::size_t, double quality) { sum += 1 / quality; });
   return sum;
 }
 
 /// Climbs the worst quality around the vertex, or the harmonic mean of all, by line searches.
-template <int Dim>
-bool Smooth<Dim>::optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim,
-                           Place& best) const {
+template <int Dim, int Space>
+bool Smooth<Dim, Space>::optimise(VertexId vertex, const VertexBall<Dim, Space>& ball, Aim aim,
+                                  Place& best) const {
   constexpr int climbs = 4, halvings = 5;
   bool moved = false;
   Place trial;
   double reach = 0.3;  // metric length of the first trial step
   for (int climb = 0; climb < climbs; ++climb) {
-    const Vector<Dim> direction = ascent(vertex, ball, aim, best);
+    const Vector<Space> direction = ascent(vertex, ball, aim, best);
     const double length = std::sqrt(squared_length(best.site.metric, direction));
     if (!(length > 0) || !std::isfinite(length)) break;
     bool better = false;
@@ -349,7 +402,7 @@ bool Smooth<Dim>::optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim
     const double most = aim == Aim::worst ? 0 : inverse_qualities(ball, best.site) * 0.999;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
       // The rest of a direction that was nearly normal to its patch is rounding, still normal.
-      const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
+      const Vector<Space> step = allowed(vertex, (reach / length) * direction);
       const auto position = stepped(vertex, best.site.position, step);
       if (!position || !place(ball, *position, best, {bar, 0}, trial)) continue;
       if (aim == Aim::mean && inverse_qualities(ball, trial.site) > most) continue;
@@ -362,8 +415,8 @@ bool Smooth<Dim>::optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim
   return moved;
 }
 
-template <int Dim>
-void Smooth<Dim>::move(VertexId vertex, const Plan& plan) {
+template <int Dim, int Space>
+void Smooth<Dim, Space>::move(VertexId vertex, const Plan& plan) {
   mesh_.site_of[vertex] = plan.site;
   mesh_.host_of[vertex] = plan.host;
   const auto elements = mesh_.elements_of.of(vertex);
@@ -377,6 +430,7 @@ void Smooth<Dim>::move(VertexId vertex, const Plan& plan) {
 }
 
 template class Smooth<2>;
+template class Smooth<2, 3>;
 template class Smooth<3>;
 
 }  // namespace ductile::meshadapt

@@ -12,13 +12,14 @@
 #include "operators/background.hpp"
 #include "operators/ball.hpp"
 #include "operators/edge_range.hpp"
+#include "operators/surface_ball.hpp"
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 struct VertexMove {
   ElementId host;
-  Site<Dim> site;
+  Site<Space> site;
   BallQualities<Dim> qualities;  // of the elements around after the move
   bool far;                      // far enough for its neighbours to be worth another look
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
@@ -34,32 +35,33 @@ struct SmoothOptions {
   bool to_surface = false;      ///< only bring vertices closer to the model of the surface
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Smooth {
  public:
   // ---- What it works on ----
   using Item = VertexId;
-  using Plan = VertexMove<Dim>;
+  using Plan = VertexMove<Dim, Space>;
   static constexpr bool keeps_conflicts = true;  // moving changes no adjacency
   static constexpr bool forgoes_wakes = true;    // the next sweep looks at what has changed
 
-  Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
+  Smooth(Mesh<Dim, Space>& mesh, const Background<Dim, Space>& background,
+         const SmoothOptions& options)
       : mesh_(mesh), background_(background), options_(options) {}
 
   /// All vertices that may move, next to elements changed after an epoch.
   static runtime::UnsetVector<VertexId> movable_vertices(const runtime::Executor& executor,
-                                                         const Mesh<Dim>& mesh,
+                                                         const Mesh<Dim, Space>& mesh,
                                                          std::uint32_t after);
   /// All vertices that may move, next to elements of a mean ratio below a bound that changed after
   /// an epoch.
   static runtime::UnsetVector<VertexId> movable_vertices_of_poor(const runtime::Executor& executor,
-                                                                 const Mesh<Dim>& mesh,
+                                                                 const Mesh<Dim, Space>& mesh,
                                                                  double mean_ratio,
                                                                  std::uint32_t after);
 
   /// All vertices of smooth patches and curves next to elements changed after an epoch.
   static runtime::UnsetVector<VertexId> vertices_on_surface(const runtime::Executor& executor,
-                                                            const Mesh<Dim>& mesh,
+                                                            const Mesh<Dim, Space>& mesh,
                                                             std::uint32_t after);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
@@ -81,38 +83,46 @@ class Smooth {
   void apply(VertexId vertex, const Plan& plan, auto&) { move(vertex, plan); }
 
   // ---- Rules: each one reason to refuse a place, named for what it protects ----
-  bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
-  bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
-  bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;
+  bool keeps_volumes(VertexId vertex, const Vector<Space>& position) const;
+  bool keeps_surface(VertexId vertex, const Vector<Space>& position) const;
+  bool keeps_lengths(VertexId vertex, const Site<Space>& site) const;
 
  private:
   /// The quantity to raise: the worst quality around, or the harmonic mean of all.
   enum class Aim : std::uint8_t { worst, mean };
-  using Score = typename VertexBall<Dim>::Score;
+  using Score = typename VertexBall<Dim, Space>::Score;
   struct Place {
-    Site<Dim> site;
+    Site<Space> site;
     ElementId host;
     Score score;
     BallQualities<Dim> qualities{};
   };
   void move(VertexId vertex, const Plan& plan);
   bool follow(VertexId vertex, const Place& best, Plan& plan) const;
-  bool place(const VertexBall<Dim>& ball, const Vector<Dim>& position, const Place& near,
+  bool place(const VertexBall<Dim, Space>& ball, const Vector<Space>& position, const Place& near,
              const Score& bar, Place& result) const;
-  Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
-  Vector<Dim> tangent(VertexId vertex) const;
-  Vector<Dim> normal(VertexId vertex) const;
-  std::optional<Vector<Dim>> stepped(VertexId vertex, const Vector<Dim>& from,
-                                     const Vector<Dim>& step) const;
+  Vector<Space> allowed(VertexId vertex, Vector<Space> displacement) const;
+  Vector<Space> tangent(VertexId vertex) const;
+  Vector<Space> normal(VertexId vertex) const;
+  std::optional<Vector<Space>> stepped(VertexId vertex, const Vector<Space>& from,
+                                       const Vector<Space>& step) const;
+  auto visit_sheet(VertexId vertex, auto&& visit) const;
+  std::array<VertexId, 2> next_on_curve(VertexId vertex) const;
+  /// The patch of a vertex inside of one, of a surface.
+  std::uint32_t region_of(VertexId vertex) const {
+    return mesh_.region_of[mesh_.elements_of.of(vertex)[0]];
+  }
   bool follows_function(VertexId vertex) const;
   bool settle(VertexId vertex, Place& best) const;
-  bool relax(VertexId vertex, const VertexBall<Dim>& ball, const Place& from, Place& to) const;
-  bool optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim, Place& best) const;
-  Vector<Dim> ascent(VertexId vertex, const VertexBall<Dim>& ball, Aim aim, const Place& at) const;
-  static double inverse_qualities(const VertexBall<Dim>& ball, const Site<Dim>& site);
+  bool relax(VertexId vertex, const VertexBall<Dim, Space>& ball, const Place& from,
+             Place& to) const;
+  bool optimise(VertexId vertex, const VertexBall<Dim, Space>& ball, Aim aim, Place& best) const;
+  Vector<Space> ascent(VertexId vertex, const VertexBall<Dim, Space>& ball, Aim aim,
+                       const Place& at) const;
+  static double inverse_qualities(const VertexBall<Dim, Space>& ball, const Site<Space>& site);
 
-  Mesh<Dim>& mesh_;
-  const Background<Dim>& background_;
+  Mesh<Dim, Space>& mesh_;
+  const Background<Dim, Space>& background_;
   SmoothOptions options_;
 };
 

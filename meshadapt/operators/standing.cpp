@@ -7,8 +7,8 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
-Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+template <int Dim, int Space>
+Standing standing_of(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
                      const EdgeRange& range, double poor) {
   const EdgeRange twice{range.shortest / 2, 2 * range.longest};
   const auto look = [&](std::size_t i) -> Standing {
@@ -54,6 +54,8 @@ bool is_better(const Standing& after, const Standing& before, const Clearly& cle
 
 template Standing standing_of<2>(const runtime::Executor&, const Mesh<2>&, const EdgeRange&,
                                  double);
+template Standing standing_of(const runtime::Executor&, const Mesh<2, 3>&, const EdgeRange&,
+                              double);
 template Standing standing_of<3>(const runtime::Executor&, const Mesh<3>&, const EdgeRange&,
                                  double);
 

@@ -20,8 +20,8 @@ struct Standing {
 };
 
 /// Thread safety: one caller; runs on the executor.
-template <int Dim>
-Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+template <int Dim, int Space>
+Standing standing_of(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
                      const EdgeRange& range, double poor);
 
 /// How much less of a fault is clearly less: at most this part of it, and for each element less by

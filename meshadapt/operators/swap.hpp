@@ -28,7 +28,7 @@ struct Swappable {
   friend auto operator<=>(const Swappable&, const Swappable&) = default;
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Swap {
  public:
   // ---- What it works on ----
@@ -36,7 +36,7 @@ class Swap {
   using Plan = Replacement<Dim>;
   static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
-  Swap(const runtime::Executor& executor, Mesh<Dim>& mesh, const EdgeRange& range = {})
+  Swap(const runtime::Executor& executor, Mesh<Dim, Space>& mesh, const EdgeRange& range = {})
       : executor_(executor), mesh_(mesh), range_(range) {}
 
   /// Edges and faces of elements changed after an epoch whose swap would be an improvement now,
@@ -44,7 +44,7 @@ class Swap {
   /// looked at: in 2D edges opposite to a wide angle, in 3D long edges and large faces. New edges
   /// are in the range, or closer to it than the one that goes.
   static runtime::UnsetVector<Swappable> improvements(const runtime::Executor& executor,
-                                                      Mesh<Dim>& mesh, std::uint32_t after,
+                                                      Mesh<Dim, Space>& mesh, std::uint32_t after,
                                                       double below, const EdgeRange& range = {});
 
   /// New elements are worth it if the worst of them is better than this.
@@ -80,7 +80,7 @@ class Swap {
 
   // ---- Apply: replace the elements, with new ones where they become more ----
   void apply(const Item&, const Plan& plan, auto& commit) {
-    replace(mesh_, plan, SharedLists<Dim>(mesh_), [&] { return commit.fresh(); });
+    replace(mesh_, plan, SharedLists<Dim, Space>(mesh_), [&] { return commit.fresh(); });
   }
   std::array<std::uint32_t, 1> demand(const Plan& plan) const {
     const std::size_t gone = plan.old_elements.size(), come = plan.new_elements.size();
@@ -101,18 +101,24 @@ class Swap {
 
  private:
   const runtime::Executor& executor_;
-  Mesh<Dim>& mesh_;
+  Mesh<Dim, Space>& mesh_;
   EdgeRange range_;
 };
 
 template <>
 bool Swap<2>::decide(const Swappable& item, const Shell& shell, Plan& plan) const;
 template <>
+bool Swap<2, 3>::decide(const Swappable& item, const Shell& shell, Plan& plan) const;
+template <>
 bool Swap<3>::decide(const Swappable& item, const Shell& shell, Plan& plan) const;
 template <>
 runtime::UnsetVector<Swappable> Swap<2>::improvements(const runtime::Executor& executor,
                                                       Mesh<2>& mesh, std::uint32_t after,
                                                       double below, const EdgeRange& range);
+template <>
+runtime::UnsetVector<Swappable> Swap<2, 3>::improvements(const runtime::Executor& executor,
+                                                         Mesh<2, 3>& mesh, std::uint32_t after,
+                                                         double below, const EdgeRange& range);
 template <>
 runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& executor,
                                                       Mesh<3>& mesh, std::uint32_t after,

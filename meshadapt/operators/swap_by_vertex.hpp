@@ -21,7 +21,7 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class SwapByVertex {
  public:
   // ---- What it works on ----
@@ -30,7 +30,7 @@ class SwapByVertex {
   static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
   /// Takes what Swap::improvements() has found. Runs on the executor.
-  SwapByVertex(const runtime::Executor& executor, Mesh<Dim>& mesh,
+  SwapByVertex(const runtime::Executor& executor, Mesh<Dim, Space>& mesh,
                runtime::UnsetVector<Swappable> found, const EdgeRange& range = {})
       : executor_(executor),
         mesh_(mesh),
@@ -69,7 +69,8 @@ class SwapByVertex {
     visit_new_edges(plan, [&](VertexId a, VertexId b) {
       if (!found_at(a).empty() && !found_at(b).empty()) commit.postpone(std::max(a, b));
     });
-    replace(mesh_, plan, SharedLists<Dim>(mesh_, &deferred_), [&] { return commit.fresh(1); });
+    replace(mesh_, plan, SharedLists<Dim, Space>(mesh_, &deferred_),
+            [&] { return commit.fresh(1); });
     if (found_at(vertex).size() > 1) commit.wake(vertex);
   }
   std::size_t commit() { return commit_lists(mesh_, deferred_); }
@@ -117,8 +118,8 @@ class SwapByVertex {
   }
 
   const runtime::Executor& executor_;
-  Mesh<Dim>& mesh_;
-  Swap<Dim> swap_;
+  Mesh<Dim, Space>& mesh_;
+  Swap<Dim, Space> swap_;
   runtime::UnsetVector<Swappable> found_;  // by vertex
   DeferredLists deferred_;
 };

@@ -8,6 +8,7 @@
 #include "mesh/finite_values.hpp"
 #include "transfer/conservative_transfer.hpp"
 #include "transfer/places.hpp"
+#include "transfer/surface_places.hpp"
 #include "transfer/vertex_places.hpp"
 
 namespace ductile::meshadapt {
@@ -64,9 +65,30 @@ TransferredField sample(const Executor& executor, const FieldOnMesh& from,
   return result;
 }
 
+TransferredField sample_surface(const Executor& executor, const FieldOnMesh& from,
+                                std::span<const double> coordinates) {
+  expect_places(executor, from.mesh.coordinates, 3, "vertex");
+  expect_points(executor, coordinates, 3);
+  const std::size_t count = coordinates.size() / 3;
+  const SurfacePlaces places(executor, from.mesh);
+  return {
+      {3, count, from.field.types,
+       places.interpolated(
+           {from.field.values, stride_of(from.field)}, count,
+           [&](std::size_t i) {
+             return Vector<3>{{coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}};
+           }),
+       from.field.name},
+      {}};
+}
+
 TransferredField transfer_any(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
                               const ProjectionOptions* projection) {
   expect_field_of(from.field, from.mesh);
+  if (is_surface(from.mesh)) {
+    if (projection) refuse_projection();
+    return sample_surface(executor, from, to.coordinates);
+  }
   return from.mesh.dimension == 2 ? transfer<2>(executor, from, to, projection)
                                   : transfer<3>(executor, from, to, projection);
 }
@@ -81,6 +103,7 @@ TransferredField interpolate_field(const Executor& executor, const FieldOnMesh& 
 TransferredField interpolate_at(const Executor& executor, const FieldOnMesh& from,
                                 std::span<const double> coordinates) {
   expect_field_of(from.field, from.mesh);
+  if (is_surface(from.mesh)) return sample_surface(executor, from, coordinates);
   return from.mesh.dimension == 2 ? sample<2>(executor, from, coordinates)
                                   : sample<3>(executor, from, coordinates);
 }

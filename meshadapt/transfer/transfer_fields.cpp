@@ -16,6 +16,7 @@
 #include "transfer/conservative_transfer.hpp"
 #include "transfer/element_fields.hpp"
 #include "transfer/places.hpp"
+#include "transfer/surface_places.hpp"
 #include "transfer/vertex_places.hpp"
 
 namespace ductile::meshadapt {
@@ -32,7 +33,7 @@ std::size_t components(const NamedField& field, int dimension) {
 
 std::size_t entity_count(const AnyMesh& mesh, Where place) {
   if (place == Where::vertices) return mesh.vertex_count();
-  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  return element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
 /// The name of a field in messages.
@@ -181,6 +182,29 @@ TransferredFields transfer_in(const Executor& executor, const NamedFieldsOnMesh&
   return carrier.take_result();
 }
 
+TransferredFields transfer_on_surface(const Executor& executor, const NamedFieldsOnMesh& from,
+                                      const AnyMesh& to, const std::vector<Carrying>& how_of) {
+  expect_places(executor, from.mesh.coordinates, 3, "old vertex");
+  expect_places(executor, to.coordinates, 3, "new vertex");
+  expect_corners<2>(executor, to);
+  const SurfacePlaces places(executor, from.mesh);
+  TransferredFields result;
+  for (std::size_t f = 0; f < from.fields.size(); ++f) {
+    if (how_of[f] == Carrying::conservatively) refuse_projection();
+    NamedField field = from.fields[f];
+    const Components values{from.fields[f].values, components(field, 3)};
+    const auto at = [&](std::size_t i) {
+      return field.place == Where::vertices ? position_in<3>(to, i) : centre_of(to, i);
+    };
+    const std::size_t count = entity_count(to, field.place);
+    field.values = field.place == Where::vertices ? places.interpolated(values, count, at)
+                                                  : places.of_elements(values, count, at);
+    if (field.place == Where::vertices) field.whole = false;
+    result.fields.push_back(std::move(field));
+  }
+  return result;
+}
+
 }  // namespace
 
 TransferredFields transfer_fields(const Executor& executor, const NamedFieldsOnMesh& from,
@@ -195,6 +219,7 @@ TransferredFields transfer_fields(const Executor& executor, const NamedFieldsOnM
                      std::to_string(from.fields.size()) + " fields, found " +
                      std::to_string(carrying.size()));
   for (std::size_t f = 0; f < from.fields.size(); ++f) expect_field(executor, from, f, how_of[f]);
+  if (is_surface(from.mesh)) return transfer_on_surface(executor, from, to, how_of);
   return from.mesh.dimension == 2 ? transfer_in<2>(executor, from, to, how_of, join)
                                   : transfer_in<3>(executor, from, to, how_of, join);
 }

@@ -39,8 +39,7 @@ def _flat(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
         raise InputError(f"points: expected shape (n, 2) or (n, 3), found {points.shape}")
     if points.shape[1] == 3 and cells.shape[1:] == (3,):
         if len(points) and np.ptp(points[:, 2]) > 1e-6 * np.ptp(points[:, :2]):
-            raise InputError("points: expected a constant z, because cells are triangles: surfaces in "
-                             "space are not supported")
+            return points  # a surface
         return np.ascontiguousarray(points[:, :2])
     return points
 
@@ -50,21 +49,22 @@ def data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
     cells = converted(state["cells"], "cells")
     points = finite(_flat(floats(state["points"], "points"), cells), "points")
     count, dim = points.shape
-    cells = indices(cells, "cells", dim + 1, count)
+    corners = 3 if cells.shape[1:] == (3,) else dim + 1
+    cells = indices(cells, "cells", corners, count)
     facets = state["facets"]
-    facets = indices(() if facets is None else facets, "facets", dim, count)
+    facets = indices(() if facets is None else facets, "facets", corners - 1, count)
     data = _ductile.from_arrays(
         points, references(state["vertex_refs"], "vertex_refs", count),
         (cells, references(state["refs"], "refs", len(cells))),
         (facets, references(state["facet_refs"], "facet_refs", len(facets))))
     edges = state.get("edges")
-    if edges is not None and np.size(converted(edges, "edges")):
+    if corners == 4 and edges is not None and np.size(converted(edges, "edges")):
         edges = indices(edges, "edges", 2, count).astype(np.int32)
         refs = state.get("edge_refs")
         data.set_edges(edges, references(np.zeros(len(edges), np.int32) if refs is None else refs,
                                          "edge_refs", len(edges)))
     for kind, entities in state.get("required", {}).items():
-        if dim == 3 or kind != "edges":
+        if corners == 4 or kind != "edges":
             data.require(kind, entities)
     data.names = _names_of(state["names"])
     return data

@@ -87,7 +87,7 @@ class Geometry:
             raise InputError(f"surfaces: expected a dict, found {shown(surfaces)}")
         functions = [(ref, _checked(surface, ref, mesh.dim))
                      for key, surface in (surfaces or {}).items() for ref in _refs(mesh, key)]
-        with named(mesh.dim):
+        with named(mesh._data.cell_dimension):
             self._data = _ductile.GeometryData(data, number(hausd, "hausd"),
                                                number(ar, "ar"), functions, executor(threads))
 

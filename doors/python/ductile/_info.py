@@ -30,6 +30,7 @@ class Info:
 
     def __init__(self, mesh: Mesh, statistics: _ductile.Statistics) -> None:
         self.dim = mesh.dim
+        self._cell_dimension = mesh._data.cell_dimension
         self.vertices = len(mesh.points)
         self.cells = len(mesh.cells)
         self.facets = len(mesh.facets)
@@ -42,7 +43,7 @@ class Info:
         self.complexity = statistics.complexity
 
     def __str__(self) -> str:
-        cells, facets = cell_names(self.dim)
+        cells, facets = cell_names(self._cell_dimension)
         lines = [", ".join((_counted(self.vertices, "vertices"), _counted(self.cells, cells),
                             _counted(self.facets, facets))),
                  _figures("edge length" if self.in_metric else "edge, plain", self.edge_length),

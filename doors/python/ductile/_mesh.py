@@ -42,7 +42,7 @@ class Mesh:
     Parameters
     ----------
     points : (n, 2) or (n, 3) array_like
-        Coordinates. Triangles in a plane of constant z become a mesh of dimension 2.
+        Coordinates. Triangles in a plane of constant z become a mesh of dimension 2, others a surface.
     cells : (m, 3) or (m, 4) array_like of int
         Vertices of triangles or tetrahedra, from 0.
     refs : (m,) array_like of int, optional
@@ -62,7 +62,7 @@ class Mesh:
         Views of the memory that C++ works on; they cannot be written to, see `replace`. In 3D, `edges`
         are those of ridges; in 2D they are the facets.
     dim : int
-        2 or 3.
+        2 or 3; of a surface alone, triangles in space, 3.
     fields, cell_fields : dict of str to ndarray
         Values at vertices and on cells: what a file has, or what you put there. `save` writes them.
     metric : ndarray or None
@@ -206,11 +206,11 @@ class Mesh:
 
     def facets_on(self, name: str) -> np.ndarray:
         """Which facets carry a reference of this name, ``(k,)`` of bool."""
-        return np.isin(self.facet_refs, self._references_of(name, self.dim - 1))
+        return np.isin(self.facet_refs, self._references_of(name, self._data.cell_dimension - 1))
 
     def cells_in(self, name: str) -> np.ndarray:
         """Which cells carry a reference of this name, ``(m,)`` of bool."""
-        return np.isin(self.refs, self._references_of(name, self.dim))
+        return np.isin(self.refs, self._references_of(name, self._data.cell_dimension))
 
     def _references_of(self, name: str, dimension: int) -> list[int]:
         text(name, "name")
@@ -337,11 +337,11 @@ class Mesh:
         if self._cut is not None and options.hausdorff_tolerance and geometry is None:
             self._cut.add_surface(options, runs)
         if isinstance(metric, Size):
-            with named(self.dim), metric._said_of_places():
+            with named(self._data.cell_dimension), metric._said_of_places():
                 result = _ductile.remesh_to_sizes(data, metric._sizes, options, runs, progress)
         else:
             rows = self._rows(data, metric, options.curved_sizes, runs)
-            with named(self.dim):
+            with named(self._data.cell_dimension):
                 result = _ductile.remesh(data, rows, options, runs, progress)
         out = Mesh._of(result[0])
         out.metric, out.report = result[1:]
@@ -581,7 +581,7 @@ class Mesh:
         parts = [(rows, kind)] if kind is not None else \
             [(np.ascontiguousarray(rows[:, [i]]), _ductile.FieldType.scalar)
              for i in range(columns)]
-        with named(self.dim):
+        with named(self._data.cell_dimension):
             carried = [_ductile.transfer(before, self._data, part,
                                          (part_kind, on_cells, conservative), runs)[0]
                        for part, part_kind in parts]
@@ -647,7 +647,7 @@ class Mesh:
 
     def quality(self, M: Optional[MetricLike] = None) -> np.ndarray:
         """The quality of each cell: its mean ratio, 1 if ideal, 0 if flat. `M` is as in `info`."""
-        with named(self.dim):
+        with named(self._data.cell_dimension):
             return _ductile.quality(self._data, self._tensors(M))
 
     def check(self) -> list[str]:

@@ -161,7 +161,7 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
                                    number(anisotropy, "anisotropy")),
         gradation=number(hgrad, "hgrad"), projection=recovery == "projection")
     rows = values.reshape(len(values), component_count(values.shape))
-    with named(mesh.dim):
+    with named(mesh._data.cell_dimension):
         tensors, fit = _ductile.solution_metric(mesh._data, rows, options, executor(threads))
     if not fit.reached:
         warn(["no metric within the bounds is what was asked for; the nearest found has the complexity "

@@ -45,7 +45,10 @@ Handle from_arrays(const Given<double>& points, const Given<std::int32_t>& verte
                                             .element_reference = span_of(std::get<1>(cells)),
                                             .facets = span_of(std::get<0>(facets)),
                                             .facet_reference = span_of(std::get<1>(facets)),
-                                            .vertex_reference = span_of(vertex_refs)};
+                                            .vertex_reference = span_of(vertex_refs),
+                                            .is_surface = points.shape(1) == 3 &&
+                                                          std::get<0>(cells).ndim() == 2 &&
+                                                          std::get<0>(cells).shape(1) == 3};
   return work({}, [&](const runtime::Executor& executor) {
     return std::make_shared<AnyMesh>(meshadapt::mesh_from_arrays(executor, arrays));
   });
@@ -79,7 +82,7 @@ auto shown(Choose choose) {
 }
 
 std::vector<std::uint32_t>& required(AnyMesh& mesh, const std::string& kind) {
-  const bool flat = mesh.dimension == 2;
+  const bool flat = element_dimension(mesh) == 2;
   if (kind == "vertices") return mesh.required_vertices;
   if (kind == "facets") return flat ? mesh.required_edges : mesh.required_triangles;
   if (kind == "cells") return flat ? mesh.required_triangles : mesh.required_tetrahedra;
@@ -97,20 +100,22 @@ void bind_arrays(py::class_<AnyMesh, Handle>& type) {
     return view(self, mesh.coordinates.data(), {signed_size(mesh.vertex_count()), mesh.dimension});
   });
   at("cells", [](const py::object& self, const AnyMesh& mesh) {
-    return mesh.dimension == 2 ? corners_of(self, mesh.triangles)
-                               : corners_of(self, mesh.tetrahedra);
+    return element_dimension(mesh) == 2 ? corners_of(self, mesh.triangles)
+                                        : corners_of(self, mesh.tetrahedra);
   });
   at("facets", [](const py::object& self, const AnyMesh& mesh) {
-    return mesh.dimension == 2 ? corners_of(self, mesh.edges) : corners_of(self, mesh.triangles);
+    return element_dimension(mesh) == 2 ? corners_of(self, mesh.edges)
+                                        : corners_of(self, mesh.triangles);
   });
   at("edges",
      [](const py::object& self, const AnyMesh& mesh) { return corners_of(self, mesh.edges); });
   at("refs", [](const py::object& self, const AnyMesh& mesh) {
-    return entries(self,
-                   mesh.dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference);
+    return entries(
+        self, element_dimension(mesh) == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference);
   });
   at("facet_refs", [](const py::object& self, const AnyMesh& mesh) {
-    return entries(self, mesh.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference);
+    return entries(self,
+                   element_dimension(mesh) == 2 ? mesh.edges.reference : mesh.triangles.reference);
   });
   at("edge_refs", [](const py::object& self, const AnyMesh& mesh) {
     return entries(self, mesh.edges.reference);
@@ -296,6 +301,8 @@ void bind_mesh(py::module_& module) {
   py::class_<AnyMesh, Handle> type(module, "MeshData");
   bind_arrays(type);
   type.def_readonly("dimension", &AnyMesh::dimension)
+      .def_property_readonly("cell_dimension",
+                             [](const AnyMesh& mesh) { return element_dimension(mesh); })
       .def_readwrite("dropped_axis", &AnyMesh::dropped_axis)
       .def_property("names", &names_of, &set_names)
       .def("copy", [](const AnyMesh& mesh) { return std::make_shared<AnyMesh>(mesh); })

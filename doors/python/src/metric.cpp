@@ -215,8 +215,8 @@ void bind_sizes(py::module_& module) {
 meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Sizes sizes) {
   for (meshadapt::SizeSource& source : sizes.sources)
     if (auto* const referenced = std::get_if<meshadapt::Referenced>(&source.place)) {
-      if (referenced->dimension == of_facets) referenced->dimension = mesh.dimension - 1;
-      if (referenced->dimension == of_cells) referenced->dimension = mesh.dimension;
+      if (referenced->dimension == of_facets) referenced->dimension = element_dimension(mesh) - 1;
+      if (referenced->dimension == of_cells) referenced->dimension = element_dimension(mesh);
     }
   return sizes;
 }

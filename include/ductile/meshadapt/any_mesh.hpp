@@ -62,6 +62,14 @@ struct AnyMesh {
   friend bool operator==(const AnyMesh&, const AnyMesh&) = default;
 };
 
+/// Is it a surface alone, triangles in space without tetrahedra?
+inline bool is_surface(const AnyMesh& mesh) {
+  return mesh.dimension == 3 && mesh.tetrahedra.size() == 0 && mesh.triangles.size() != 0;
+}
+
+/// The dimension of what is adapted: 2 for triangles, in the plane or in space, 3 for tetrahedra.
+inline int element_dimension(const AnyMesh& mesh) { return is_surface(mesh) ? 2 : mesh.dimension; }
+
 /// The elements of a mesh of dimension Dim: its triangles or its tetrahedra.
 template <int Dim>
 const Cells<Dim + 1>& elements_in(const AnyMesh& mesh) {

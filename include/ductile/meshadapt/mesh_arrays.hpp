@@ -29,6 +29,8 @@ struct MeshArrays {
   std::span<const std::int32_t> facet_reference = {};    ///< [facet]
   std::span<const std::int32_t> vertex_reference = {};   ///< [vertex]
   std::string name = {};                                 ///< for messages
+  /// In dimension 3: a surface alone, whose elements are triangles and whose facets are edges.
+  bool is_surface = false;
 };
 
 /// Makes a mesh from these arrays. Given facets keep their order and come first, so their indices

@@ -80,7 +80,7 @@ Tinting tint_by_field(const meshadapt::AnyMesh& mesh, const NamedField& field) {
       result.colour_of.push_back(
           colour_in(range, at_vertices ? mean_of(field, cells.vertices[e]) : field.values[e]));
   };
-  mesh.dimension == 2 ? add_all(mesh.triangles) : add_all(mesh.tetrahedra);
+  meshadapt::element_dimension(mesh) == 2 ? add_all(mesh.triangles) : add_all(mesh.tetrahedra);
   // The field outlives the tinting, see SceneOptions.
   result.facet_colour = [&field, range, at_vertices](std::span<const std::uint32_t> corners,
                                                      std::size_t element) {

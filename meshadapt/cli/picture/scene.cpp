@@ -22,7 +22,7 @@ Position position(const AnyMesh& mesh, std::uint32_t vertex) {
 
 /// Edge of the regular element with the same area or volume.
 double size_of(const AnyMesh& mesh, std::size_t element) {
-  if (mesh.dimension == 2) {
+  if (element_dimension(mesh) == 2) {
     const auto& v = mesh.triangles.vertices[element];
     const Position a = position(mesh, v[0]);
     const double area = norm(cross(position(mesh, v[1]) - a, position(mesh, v[2]) - a)) / 2;
@@ -43,11 +43,12 @@ Tinting tint_by_size(const AnyMesh& mesh, std::size_t elements) {
     return std::max(sorted[static_cast<std::size_t>(share * static_cast<double>(elements - 1))],
                     1e-300);
   };
-  Tinting result{.legend = {.title = "size of the elements (edge of the regular one of the same " +
-                                     std::string(mesh.dimension == 2 ? "area)" : "volume)"),
-                            .tint = Tint::size,
-                            .from = at(0.005),
-                            .to = at(0.995)}};
+  Tinting result{
+      .legend = {.title = "size of the elements (edge of the regular one of the same " +
+                          std::string(element_dimension(mesh) == 2 ? "area)" : "volume)"),
+                 .tint = Tint::size,
+                 .from = at(0.005),
+                 .to = at(0.995)}};
   widen(result.legend);
   const double range = std::log(result.legend.to / result.legend.from);
   for (const double s : size)
@@ -103,7 +104,8 @@ void add_solid(Scene& scene, const AnyMesh& mesh, const Look& look) {
 
 /// Faint, so that ellipses are seen.
 Tinting no_tint(const AnyMesh& mesh) {
-  const std::size_t elements = mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  const std::size_t elements =
+      element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
   return {.colour_of = std::vector<Colour>(elements, Colour{0.97, 0.97, 0.97})};
 }
 
@@ -130,14 +132,15 @@ std::vector<std::int32_t> distinct(std::vector<std::int32_t> references) {
 Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
                       const AnyField* metric, Tint tint) {
   const auto& references =
-      mesh.dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
+      element_dimension(mesh) == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
   if (tint == Tint::size && !references.empty()) return tint_by_size(mesh, references.size());
   Tinting result;
   result.legend.tint = tint;
   if (tint == Tint::reference) {
     result.legend.title = "elements";
     result.legend.references = distinct(references);
-    result.legend.names = names_of_references(mesh, mesh.dimension, result.legend.references);
+    result.legend.names =
+        names_of_references(mesh, element_dimension(mesh), result.legend.references);
     for (const std::int32_t reference : references)
       result.colour_of.push_back(reference_colour(reference));
   } else {
@@ -168,7 +171,12 @@ Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const A
                                 "found none; give a mesh with some");
   Scene scene;
   scene.caption = caption_of(mesh);
-  const Tinting tinting = tinting_of(executor, mesh, metric, options);
+  Tinting tinting = tinting_of(executor, mesh, metric, options);
+  if (meshadapt::is_surface(mesh) && !tinting.facet_colour && options.tint != Tint::reference)
+    tinting.facet_colour = [colour_of = tinting.colour_of](std::span<const std::uint32_t>,
+                                                           std::size_t element) {
+      return colour_of[element];
+    };
   if (mesh.dimension == 3) {
     const int axis = options.cut_axis < 0 ? thinnest_axis(mesh) : options.cut_axis;
     add_solid(scene, mesh, {tinting, shown, axis});

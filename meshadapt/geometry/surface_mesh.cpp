@@ -1,0 +1,429 @@
+#include "geometry/surface_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/determinant.hpp"
+#include "core/first_bad.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "geometry/check_input.hpp"
+#include "geometry/classify.hpp"
+#include "geometry/curvature.hpp"
+#include "geometry/facet_sides.hpp"
+#include "geometry/marked_points.hpp"
+#include "geometry/tag_boundary.hpp"
+#include "mesh/neighbours.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+/// The number of the facet that is the triangle, in an element without a fourth corner.
+constexpr int boundary_facet = 3;
+
+/// The next corner of a triangle.
+constexpr std::size_t next(std::size_t corner) { return (corner + 1) % 3; }
+
+/// A surface as the boundary of elements that have no fourth corner; without patches and curves.
+Mesh<3> as_boundary(const Executor& executor, const Mesh<2, 3>& mesh) {
+  Mesh<3> boundary;
+  boundary.elements_of.reset(executor, 0);
+  boundary.links_of.reset(executor, 0);
+  boundary.grow(executor, mesh.vertex_slots(), mesh.element_slots());
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    const auto [a, b, c] = mesh.corners_of[e];
+    boundary.corners_of[e] = {a, c, b, none};  // whose last facet is a b c
+    boundary.patches_of[e] = {0, 0, 0, 0};
+    boundary.region_of[e] = 0;
+  });
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    boundary.site_of[v] = mesh.site_of[v];
+    boundary.kind_of[v] = mesh.kind_of[v];
+    boundary.entity_of[v] = mesh.entity_of[v];
+    boundary.reference_of[v] = mesh.reference_of[v];
+    for (const ElementId e : mesh.elements_of.of(static_cast<VertexId>(v)))
+      boundary.elements_of.insert(static_cast<std::uint32_t>(v), e);
+  });
+  boundary.regions.push_back({});
+  return boundary;
+}
+
+/// The same with its patches and curves.
+Mesh<3> classified_boundary(const Executor& executor, const Mesh<2, 3>& mesh) {
+  Mesh<3> boundary = as_boundary(executor, mesh);
+  parallel_for(executor, mesh.element_slots(),
+               [&](std::size_t e) { boundary.patches_of[e][boundary_facet] = mesh.region_of[e]; });
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t at) {
+    const auto v = static_cast<VertexId>(at);
+    const auto around = mesh.elements_of.of(v);
+    if (mesh.kind_of[v].class_dimension == 2 && !around.empty())
+      boundary.entity_of[v] = mesh.region_of[around[0]];
+    std::vector<CurveLink> links;  // once for each triangle
+    for (const ElementId e : around)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (const CurveId curve = mesh.patches_of[e][i]; curve != 0) {
+          const VertexId a = mesh.corners_of[e][next(i)], b = mesh.corners_of[e][next(next(i))];
+          if (a == v || b == v) links.push_back({a == v ? b : a, curve});
+        }
+    std::sort(links.begin(), links.end());
+    links.erase(std::unique(links.begin(), links.end()), links.end());
+    for (const CurveLink& link : links) boundary.links_of.insert(v, link);
+  });
+  boundary.patches = mesh.regions;
+  boundary.curves = mesh.patches;
+  boundary.surface = mesh.surface;
+  return boundary;
+}
+
+/// An edge of a triangle. Corners turn from `from` to the other end.
+struct TriangleEdge {
+  SideKey key;
+  ElementId triangle;
+  VertexId from;
+  friend auto operator<=>(const TriangleEdge&, const TriangleEdge&) = default;
+};
+
+/// Edges that are passed by triangles, of two by both in the same direction.
+class Edges {
+ public:
+  Edges(const Executor& executor, const std::vector<Corners<2>>& triangles)
+      : edges_(runtime::make_unset_vector<TriangleEdge>(executor, 3 * triangles.size())) {
+    parallel_for(executor, triangles.size(), [&](std::size_t e) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexId a = triangles[e][i], b = triangles[e][next(i)];
+        edges_[3 * e + i] = {edge_key(a, b), static_cast<ElementId>(e), a};
+      }
+    });
+    runtime::parallel_sort(executor, std::span(edges_));
+  }
+
+  /// Calls visit(run) with the passes of each edge.
+  void each(auto&& visit) const {
+    for (std::size_t begin = 0, end = 0; begin < edges_.size(); begin = end) {
+      while (end < edges_.size() && edges_[end].key == edges_[begin].key) ++end;
+      visit(std::span(edges_).subspan(begin, end - begin));
+    }
+  }
+
+  /// Edges of two triangles that are turned in opposite ways.
+  std::vector<SideKey> seams() const {
+    std::vector<SideKey> seams;
+    each([&](std::span<const TriangleEdge> run) {
+      if (run.size() == 2 && run[0].from == run[1].from) seams.push_back(run[0].key);
+    });
+    return seams;
+  }
+
+  /// The other triangle at an edge of two, and whether it is turned in the opposite way.
+  std::pair<ElementId, bool> across(SideKey key, ElementId triangle) const {
+    const auto at = std::lower_bound(edges_.begin(), edges_.end(), TriangleEdge{key, 0, 0});
+    if (edges_.end() - at < 2 || at[1].key != key || (edges_.end() - at > 2 && at[2].key == key))
+      return {none, false};
+    return {at[0].triangle == triangle ? at[1].triangle : at[0].triangle, at[0].from == at[1].from};
+  }
+
+ private:
+  runtime::UnsetVector<TriangleEdge> edges_;  // sorted
+};
+
+/// Leaves triangles out and turns them, see mended_surface().
+class SurfaceMender {
+ public:
+  SurfaceMender(const Executor& executor, const AnyMesh& any, std::vector<std::string>& warnings)
+      : executor_(executor), any_(any), warnings_(warnings) {}
+
+  std::optional<AnyMesh> run() {
+    choose();
+    orient();
+    if (warnings_said_ == 0) return std::nullopt;
+    AnyMesh mended = any_;
+    mended.triangles.vertices = corners_;
+    for (std::size_t e = 0; e < chosen_.size(); ++e)
+      mended.triangles.reference[e] = any_.triangles.reference[chosen_[e]];
+    mended.triangles.reference.resize(chosen_.size());
+    mended.required_triangles.clear();
+    const auto required = marked(any_, any_.triangles.size(), any_.required_triangles, "triangle");
+    for (std::uint32_t e = 0; e < chosen_.size(); ++e)
+      if (required[chosen_[e]]) mended.required_triangles.push_back(e);
+    return mended;
+  }
+
+ private:
+  std::array<Vector<3>, 3> points(std::size_t t) const {
+    std::array<Vector<3>, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = position_in<3>(any_, any_.triangles.vertices[t][i]);
+    return p;
+  }
+
+  /// Lists the triangles that have an area, each once.
+  void choose() {
+    const auto& triangles = any_.triangles.vertices;
+    using Keyed = std::pair<std::array<VertexId, 3>, std::uint32_t>;
+    auto keyed = runtime::make_unset_vector<Keyed>(executor_, triangles.size());
+    std::vector<std::uint8_t> left_out(triangles.size(), 0);
+    parallel_for(executor_, triangles.size(), [&](std::size_t t) {
+      keyed[t] = {triangles[t], static_cast<std::uint32_t>(t)};
+      std::sort(keyed[t].first.begin(), keyed[t].first.end());
+      const auto [a, b, c] = points(t);
+      if (!(certain_area(a, b, c) > 0)) left_out[t] = 1;
+    });
+    runtime::parallel_sort(executor_, std::span(keyed));
+    for (std::size_t i = 1; i < keyed.size(); ++i)
+      if (keyed[i].first == keyed[i - 1].first && left_out[keyed[i].second] == 0)
+        left_out[keyed[i].second] = 2;
+    report(left_out, 1, "have no area and are left out");
+    report(left_out, 2, "are listed twice and are left out");
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+      if (left_out[t] == 0) chosen_.push_back(t);
+    if (chosen_.empty()) refuse_mesh(any_, "expected triangles with an area, found none");
+  }
+
+  void report(const std::vector<std::uint8_t>& flags, std::uint8_t flag, const std::string& what) {
+    const auto first = std::find(flags.begin(), flags.end(), flag);
+    if (first == flags.end()) return;
+    ++warnings_said_;
+    warnings_.push_back(any_.name + ": " +
+                        std::to_string(std::count(flags.begin(), flags.end(), flag)) + " of " +
+                        std::to_string(flags.size()) + " triangles " + what + "; the first is " +
+                        entity("triangle", static_cast<std::size_t>(first - flags.begin())));
+  }
+
+  // ---- Orientation: neighbours pass their common edge in opposite directions ----
+
+  void orient() {
+    corners_.resize(chosen_.size());
+    parallel_for(executor_, chosen_.size(),
+                 [&](std::size_t e) { corners_[e] = any_.triangles.vertices[chosen_[e]]; });
+    const Edges edges(executor_, corners_);
+    if (edges.seams().empty()) return;
+    std::vector<std::uint8_t> turned(corners_.size(), none_yet);
+    std::vector<ElementId> part;
+    for (ElementId seed = 0; seed < corners_.size(); ++seed)
+      if (turned[seed] == none_yet) turn_part(edges, seed, turned, part);
+    std::vector<std::uint8_t> listed(any_.triangles.size(), 0);
+    for (std::size_t e = 0; e < corners_.size(); ++e) {
+      listed[chosen_[e]] = turned[e];
+      if (turned[e] != 0) std::swap(corners_[e][1], corners_[e][2]);
+    }
+    report(listed, 1, "were turned as most of their neighbours are");
+  }
+
+  /// Turns what is connected with a triangle by edges of two as that is, or as most of it is.
+  void turn_part(const Edges& edges, ElementId seed, std::vector<std::uint8_t>& turned,
+                 std::vector<ElementId>& part) const {
+    part.assign(1, seed);
+    turned[seed] = 0;
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < part.size(); ++at)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto& corners = corners_[part[at]];
+        const auto [other, opposite] =
+            edges.across(edge_key(corners[i], corners[next(i)]), part[at]);
+        if (other == none || turned[other] != none_yet) continue;
+        turned[other] = turned[part[at]] ^ static_cast<std::uint8_t>(opposite);
+        count += turned[other];
+        part.push_back(other);
+      }
+    if (2 * count > part.size())
+      for (const ElementId e : part) turned[e] ^= 1U;
+  }
+
+  static constexpr std::uint8_t none_yet = 2;
+
+  const Executor& executor_;
+  const AnyMesh& any_;
+  std::vector<std::string>& warnings_;
+  std::size_t warnings_said_ = 0;
+  std::vector<std::uint32_t> chosen_;  // [triangle], its number in the file
+  std::vector<Corners<2>> corners_;    // [triangle]
+};
+
+class SurfaceMeshMaker {
+ public:
+  SurfaceMeshMaker(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options,
+                   Neighbours<2>& neighbours, std::vector<std::string>& warnings)
+      : executor_(executor),
+        any_(any),
+        options_(options),
+        neighbours_(neighbours),
+        warnings_(warnings),
+        corners_(any.triangles.vertices),
+        edges_(executor, corners_) {}
+
+  Mesh<2, 3> make() {
+    fill();
+    rebuild_elements_of(executor_, mesh_);
+    report_unused_vertices();
+    find_neighbours();
+    classify();
+    return std::move(mesh_);
+  }
+
+ private:
+  void warn(const std::string& text) { warnings_.push_back(any_.name + ": " + text); }
+
+  // ---- The mesh ----
+
+  void fill() {
+    mesh_.elements_of.reset(executor_, 0);
+    mesh_.grow(executor_, any_.vertex_count(), corners_.size());
+    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
+      mesh_.site_of[v].position = position_in<3>(any_, v);
+      mesh_.reference_of[v] = any_.vertex_reference[v];
+      mesh_.kind_of[v] = {};
+      mesh_.entity_of[v] = 0;
+    });
+    for (const std::uint32_t v : any_.corners) mesh_.kind_of[v].corner = true;
+    for (const std::uint32_t v : any_.required_vertices) mesh_.kind_of[v].required = true;
+    const std::vector<std::uint8_t> marked_of = marked_points(any_);
+    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
+      if (marked_of[v] != 0 && !mesh_.kind_of[v].required) mesh_.kind_of[v].corner = true;
+    });
+    parallel_for(executor_, corners_.size(), [&](std::size_t e) {
+      mesh_.corners_of[e] = corners_[e];
+      mesh_.patches_of[e].fill(0);
+      mesh_.changed_at[e] = mesh_.epoch;
+    });
+  }
+
+  void report_unused_vertices() {
+    const auto unused = runtime::parallel_reduce(
+        executor_, mesh_.vertex_slots(), std::size_t{0},
+        [&](std::size_t v) { return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))}; },
+        [](std::size_t a, std::size_t b) { return a + b; });
+    if (unused != 0)
+      warn(std::to_string(unused) + " of " + std::to_string(mesh_.vertex_slots()) +
+           " vertices belong to no triangle and are left out");
+  }
+
+  void find_neighbours() {
+    runtime::FreshMemory fresh;
+    neighbours_.resize_for_overwrite(mesh_.element_slots(), fresh);
+    fresh.touch(executor_);
+    meshadapt::find_neighbours<2>(
+        executor_, mesh_.corners_of, mesh_.vertex_slots(),
+        [this](VertexId v) { return mesh_.elements_of.of(v); }, neighbours_);
+    parallel_for(executor_, mesh_.element_slots(),
+                 [&](std::size_t e) { std::ranges::replace(neighbours_[e], crowded, none); });
+  }
+
+  // ---- Patches and curves ----
+
+  std::vector<TaggedFacet<3>> facets() const {
+    const auto required = marked(any_, any_.triangles.size(), any_.required_triangles, "triangle");
+    std::vector<TaggedFacet<3>> facets(corners_.size());
+    parallel_for(executor_, facets.size(), [&](std::size_t e) {
+      facets[e].corners = corners_[e];
+      facets[e].data = {{}, any_.triangles.reference[e], true, required[e]};
+      facets[e].element = static_cast<ElementId>(e);
+      facets[e].facet = boundary_facet;
+    });
+    return facets;
+  }
+
+  /// Edges that are listed, that cannot be smooth, or that shall stay.
+  std::vector<ListedEdge> listed_edges(MeshInMaking<3>& making) {
+    std::vector<ListedEdge> edges = tag_edges(making);
+    const std::vector<SideKey> seams = edges_.seams();
+    if (!seams.empty())
+      warn("the surface has one side only: " + std::to_string(seams.size()) +
+           " edges, where neighbours cannot be turned alike, are kept as curves");
+    std::map<SideKey, std::size_t> index_of;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      index_of.emplace(edge_key(edges[i].a, edges[i].b), i);
+    const auto keep = [&](SideKey key, bool required) {
+      const auto [at, is_new] = index_of.emplace(key, edges.size());
+      if (is_new) edges.push_back({static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key)});
+      edges[at->second].required = edges[at->second].required || required;
+    };
+    for (const SideKey key : seams) keep(key, false);
+    if (options_.lock_boundary)
+      edges_.each([&](std::span<const TriangleEdge> run) {
+        if (run.size() == 1) keep(run[0].key, true);
+      });
+    return edges;
+  }
+
+  void classify() {
+    Neighbours<3> unused;
+    MeshInMaking<3> making{
+        executor_, any_, options_, unused, warnings_, false, as_boundary(executor_, mesh_)};
+    const auto edges = listed_edges(making);
+    Mesh<3>& boundary = making.mesh;
+    meshadapt::classify(executor_, boundary, facets(), edges, options_);
+    parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t v) {
+      mesh_.kind_of[v] = boundary.kind_of[v];
+      mesh_.entity_of[v] = boundary.kind_of[v].class_dimension == 1 ? boundary.entity_of[v] : 0;
+    });
+    parallel_for(executor_, mesh_.element_slots(), [&](std::size_t e) {
+      mesh_.region_of[e] = boundary.patches_of[e][boundary_facet];
+      for (std::size_t i = 0; i < 3; ++i)
+        mesh_.patches_of[e][i] =
+            boundary.curve_of(corners_[e][next(i)], corners_[e][next(next(i))]);
+    });
+    mark_crack_sides(boundary);
+    mesh_.patches = std::move(boundary.curves);
+    mesh_.regions = std::move(boundary.patches);
+    mesh_.surface = std::move(boundary.surface);
+    mesh_.rounding = std::move(boundary.rounding);
+  }
+
+  /// Curves with the same ends may be the sides of a slit.
+  static void mark_crack_sides(Mesh<3>& boundary) {
+    std::vector<std::array<VertexId, 2>> ends_of(boundary.curves.size(), {none, none});
+    for (VertexId v = 0; v < boundary.vertex_slots(); ++v)
+      if (boundary.kind_of[v].class_dimension == 0)
+        for (const CurveLink& link : boundary.links_of.of(v)) {
+          auto& ends = ends_of[link.curve];
+          (ends[0] == none ? ends[0] : ends[1]) = v;
+        }
+    std::map<std::array<VertexId, 2>, CurveId> first_with;
+    for (CurveId c = 1; c < boundary.curves.size(); ++c) {
+      if (ends_of[c][1] == none) continue;
+      const auto [at, is_new] = first_with.emplace(ends_of[c], c);
+      if (!is_new) boundary.curves[c].crack_side = boundary.curves[at->second].crack_side = true;
+    }
+  }
+
+  const Executor& executor_;
+  const AnyMesh& any_;
+  const MakeMeshOptions& options_;
+  Neighbours<2>& neighbours_;
+  std::vector<std::string>& warnings_;
+  Mesh<2, 3> mesh_;
+  const std::vector<Corners<2>>& corners_;  // [element]
+  Edges edges_;
+};
+
+}  // namespace
+
+Mesh<2, 3> make_surface_mesh(const Executor& executor, const AnyMesh& any,
+                             const MakeMeshOptions& options, Neighbours<2>& neighbours,
+                             std::vector<std::string>& warnings) {
+  check_input<2, 3>(executor, any, options);
+  const auto mended = SurfaceMender(executor, any, warnings).run();
+  return SurfaceMeshMaker(executor, mended ? *mended : any, options, neighbours, warnings).make();
+}
+
+std::optional<AnyMesh> mended_surface(const Executor& executor, const AnyMesh& any,
+                                      const MakeMeshOptions& options,
+                                      std::vector<std::string>& warnings) {
+  check_input<2, 3>(executor, any, options);
+  return SurfaceMender(executor, any, warnings).run();
+}
+
+void bound_curved_sizes(const Executor& executor, const Mesh<2, 3>& mesh, double tolerance,
+                        std::vector<Metric<3>>& metric_of) {
+  bound_curved_sizes(executor, classified_boundary(executor, mesh), tolerance, metric_of);
+}
+
+}  // namespace ductile::meshadapt

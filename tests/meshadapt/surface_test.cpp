@@ -1,0 +1,391 @@
+/// @file
+/// Adapts surfaces alone: triangles in space without tetrahedra.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "support/bits.hpp"
+
+namespace ductile::meshadapt::surface_test {
+namespace {
+
+using runtime::Executor;
+using Edge = std::array<std::uint32_t, 2>;
+
+const Executor& two() {
+  static const Executor executor({.threads = 2});
+  return executor;
+}
+
+// ---- Surfaces ----
+
+/// The graph of (u, v) in [0, 1]^2, of n x m cells; `closed`: u = 1 is u = 0.
+AnyMesh sheet(int n, int m, const std::function<Vector<3>(double, double)>& at, bool closed = false,
+              std::int32_t reference = 1) {
+  AnyMesh mesh;
+  mesh.dimension = 3;
+  mesh.name = "sheet";
+  const int columns = closed ? n : n + 1;
+  for (int j = 0; j <= m; ++j)
+    for (int i = 0; i < columns; ++i)
+      for (const double x : at(static_cast<double>(i) / n, static_cast<double>(j) / m).x)
+        mesh.coordinates.push_back(x);
+  mesh.vertex_reference.assign(mesh.coordinates.size() / 3, 0);
+  const auto vertex = [&](int i, int j) {
+    return static_cast<std::uint32_t>(j * columns + i % columns);
+  };
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < n; ++i) {
+      mesh.triangles.add({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)}, reference);
+      mesh.triangles.add({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)}, reference);
+    }
+  return mesh;
+}
+
+/// Joins vertices that are within 1e-9 of each other.
+AnyMesh welded(const std::vector<AnyMesh>& parts) {
+  AnyMesh mesh;
+  mesh.dimension = 3;
+  mesh.name = "parts";
+  std::map<std::array<long long, 3>, std::uint32_t> number_of;
+  for (const AnyMesh& part : parts) {
+    std::vector<std::uint32_t> number;
+    for (std::size_t v = 0; v < part.vertex_count(); ++v) {
+      std::array<long long, 3> key;
+      for (std::size_t k = 0; k < 3; ++k) key[k] = std::llround(part.coordinates[3 * v + k] * 1e9);
+      const auto [at, is_new] =
+          number_of.try_emplace(key, static_cast<std::uint32_t>(number_of.size()));
+      if (is_new)
+        mesh.coordinates.insert(mesh.coordinates.end(), &part.coordinates[3 * v],
+                                &part.coordinates[3 * v] + 3);
+      number.push_back(at->second);
+    }
+    for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+      auto corners = part.triangles.vertices[t];
+      for (std::uint32_t& v : corners) v = number[v];
+      if (std::set(corners.begin(), corners.end()).size() == 3)
+        mesh.triangles.add(corners, part.triangles.reference[t]);
+    }
+  }
+  mesh.vertex_reference.assign(mesh.coordinates.size() / 3, 0);
+  return mesh;
+}
+
+Vector<3> on_sphere(double u, double v) {
+  const double a = 2 * std::numbers::pi * u, b = std::numbers::pi * v;
+  return {{std::cos(a) * std::sin(b), std::sin(a) * std::sin(b), -std::cos(b)}};
+}
+AnyMesh sphere(int n) { return welded({sheet(2 * n, n, on_sphere, true)}); }
+AnyMesh hemisphere(int n) {
+  return welded({sheet(
+      2 * n, n, [](double u, double v) { return on_sphere(u, v / 2); }, true)});
+}
+
+/// A tube of radius 1/2 and height 2, in long facets; its caps have the references 2 and 3.
+AnyMesh cylinder(int n, bool with_caps) {
+  const auto on_tube = [](double u, double v) {
+    const double a = 2 * std::numbers::pi * u;
+    return Vector<3>{{std::cos(a) / 2, std::sin(a) / 2, 2 * v}};
+  };
+  std::vector<AnyMesh> parts{sheet(n, 1, on_tube, true)};
+  for (const double z : {0.0, 2.0})
+    if (with_caps)
+      parts.push_back(sheet(
+          n, 1,
+          [&, z](double u, double v) {
+            const double a = 2 * std::numbers::pi * (z == 0 ? u : 1 - u);
+            return Vector<3>{{(1 - v) * std::cos(a) / 2, (1 - v) * std::sin(a) / 2, z}};
+          },
+          true, z == 0 ? 2 : 3));
+  // Outwards all over.
+  for (std::size_t p = 1; p < parts.size(); ++p)
+    for (auto& corners : parts[p].triangles.vertices) std::swap(corners[0], corners[1]);
+  return welded(parts);
+}
+
+/// Three squares that meet along the line x = y = 0.
+AnyMesh three_sheets(int n) {
+  std::vector<AnyMesh> parts;
+  for (int k = 0; k < 3; ++k) {
+    const double a = 2 * std::numbers::pi * k / 3;
+    parts.push_back(sheet(
+        n, n,
+        [a](double u, double v) {
+          return Vector<3>{{u * std::cos(a), u * std::sin(a), v}};
+        },
+        false, k + 1));
+  }
+  return welded(parts);
+}
+
+// ---- What there is ----
+
+Vector<3> at(const AnyMesh& mesh, std::uint32_t v) { return position_in<3>(mesh, v); }
+
+std::map<Edge, int> edges_of(const AnyMesh& mesh) {
+  std::map<Edge, int> count_of;
+  for (const auto& corners : mesh.triangles.vertices)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = corners[i], b = corners[(i + 1) % 3];
+      ++count_of[{std::min(a, b), std::max(a, b)}];
+    }
+  return count_of;
+}
+
+/// The length of the edges of one triangle (rims), or of more than two.
+double length_of(const AnyMesh& mesh, const std::function<bool(int)>& counts) {
+  double sum = 0;
+  for (const auto& [edge, count] : edges_of(mesh))
+    if (counts(count)) sum += norm(at(mesh, edge[1]) - at(mesh, edge[0]));
+  return sum;
+}
+double rims(const AnyMesh& mesh) {
+  return length_of(mesh, [](int n) { return n == 1; });
+}
+double non_manifold(const AnyMesh& mesh) {
+  return length_of(mesh, [](int n) { return n > 2; });
+}
+
+long euler(const AnyMesh& mesh) {
+  return static_cast<long>(mesh.vertex_count()) - static_cast<long>(edges_of(mesh).size()) +
+         static_cast<long>(mesh.triangles.size());
+}
+
+Vector<3> normal(const AnyMesh& mesh, std::size_t t) {
+  const auto& corners = mesh.triangles.vertices[t];
+  return facet_normal({at(mesh, corners[0]), at(mesh, corners[1]), at(mesh, corners[2])});
+}
+
+std::map<std::int32_t, double> areas(const AnyMesh& mesh) {
+  std::map<std::int32_t, double> area;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    area[mesh.triangles.reference[t]] += norm(normal(mesh, t)) / 2;
+  return area;
+}
+
+double volume(const AnyMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    sum += dot(at(mesh, mesh.triangles.vertices[t][0]), normal(mesh, t)) / 6;
+  return sum;
+}
+
+AdaptOptions within(double tolerance) {
+  AdaptOptions options;
+  options.make.hausdorff_tolerance = tolerance;
+  return options;
+}
+
+/// Adapts to a size, and checks what holds of all results.
+AdaptedMesh adapted_to(const AnyMesh& mesh, const AnyField& metric, const AdaptOptions& options) {
+  AdaptedMesh adapted = adapt(two(), mesh, metric, options);
+  const auto faults = check_adapted(two(), mesh, adapted.mesh, options.make.hausdorff_tolerance);
+  EXPECT_TRUE(faults.empty()) << faults.front();
+  EXPECT_EQ(adapted.mesh.dimension, 3);
+  EXPECT_EQ(adapted.mesh.tetrahedra.size(), 0U);
+  return adapted;
+}
+AdaptedMesh adapted_to(const AnyMesh& mesh, double size, const AdaptOptions& options) {
+  return adapted_to(mesh, constant_metric(mesh, size), options);
+}
+
+double worst_quality(const AnyMesh& mesh) {
+  const auto quality = element_qualities(two(), mesh, nullptr);
+  return *std::min_element(quality.begin(), quality.end());
+}
+
+// ---- Tests ----
+
+TEST(Surface, OfASphereStaysRound) {
+  for (const double size : {0.05, 0.2}) {
+    SCOPED_TRACE(size);
+    const AdaptedMesh adapted = adapted_to(sphere(24), size, within(size / 20));
+    EXPECT_EQ(euler(adapted.mesh), 2);
+    EXPECT_EQ(rims(adapted.mesh) + non_manifold(adapted.mesh), 0);
+    EXPECT_NEAR(volume(adapted.mesh) / (4 * std::numbers::pi / 3), 1, 0.02);
+    EXPECT_GT(worst_quality(adapted.mesh), 0.35);
+    EXPECT_GT(measure(two(), adapted.mesh, &adapted.metric).share_in_range(), 0.9);
+  }
+}
+
+TEST(Surface, OfACylinderKeepsItsRims) {
+  const AdaptedMesh adapted = adapted_to(cylinder(40, true), 0.12, within(0.004));
+  EXPECT_EQ(euler(adapted.mesh), 2);
+  EXPECT_EQ(rims(adapted.mesh) + non_manifold(adapted.mesh), 0);
+  EXPECT_NEAR(volume(adapted.mesh) / (std::numbers::pi / 2), 1, 0.01);
+  EXPECT_GT(worst_quality(adapted.mesh), 0.35);
+  for (std::size_t t = 0; t < adapted.mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : adapted.mesh.triangles.vertices[t])
+      if (adapted.mesh.triangles.reference[t] > 1) {
+        EXPECT_NEAR(at(adapted.mesh, v)[2], adapted.mesh.triangles.reference[t] == 2 ? 0 : 2, 1e-9);
+      }
+}
+
+TEST(Surface, ThatIsOpenKeepsItsRim) {
+  const AnyMesh mesh = hemisphere(16);
+  const AdaptedMesh adapted = adapted_to(mesh, 0.15, within(0.004));
+  EXPECT_EQ(euler(adapted.mesh), euler(mesh));
+  EXPECT_NEAR(rims(adapted.mesh) / rims(mesh), 1, 0.01);
+  EXPECT_GT(worst_quality(adapted.mesh), 0.35);
+}
+
+TEST(Surface, OfThreeSheetsKeepsTheLineWhereTheyMeet) {
+  const AnyMesh mesh = three_sheets(8);
+  for (const double size : {0.05, 0.4})
+    for (const double tolerance : {0.0, 0.01}) {
+      SCOPED_TRACE(std::to_string(size) + " " + std::to_string(tolerance));
+      const AdaptedMesh adapted = adapted_to(mesh, size, within(tolerance));
+      EXPECT_NEAR(non_manifold(adapted.mesh), 1, 1e-12);
+      EXPECT_NEAR(rims(adapted.mesh), rims(mesh), 1e-9);
+      for (const auto& [reference, area] : areas(adapted.mesh))
+        EXPECT_NEAR(area, areas(mesh).at(reference), 1e-9);
+    }
+}
+
+/// A flat square in a plane that is not one of the axes'.
+TEST(Surface, ThatIsFlatIsAsGoodAsInThePlane) {
+  const auto in_plane = [](double u, double v) {
+    return u * Vector<3>{{0.6, 0.64, 0.48}} + v * Vector<3>{{-0.8, 0.48, 0.36}};
+  };
+  AnyMesh mesh = sheet(10, 10, in_plane), flat = mesh;
+  flat.dimension = 2;
+  flat.coordinates.clear();
+  for (int j = 0; j <= 10; ++j)
+    for (int i = 0; i <= 10; ++i)
+      for (const int k : {i, j}) flat.coordinates.push_back(k / 10.0);
+  AdaptOptions options;
+  options.make.complete_boundary = true;
+  const AdaptedMesh here = adapted_to(mesh, 0.04, {});
+  const AdaptedMesh there = adapt(two(), flat, constant_metric(flat, 0.04), options);
+  const auto mean = [](const AdaptedMesh& adapted) {
+    return measure(two(), adapted.mesh, &adapted.metric).quality.mean;
+  };
+  EXPECT_NEAR(areas(here.mesh)[1], 1, 1e-12);
+  EXPECT_NEAR(rims(here.mesh), 4, 1e-12);
+  EXPECT_NEAR(mean(here), mean(there), 0.01);
+  EXPECT_NEAR(static_cast<double>(here.mesh.triangles.size()) /
+                  static_cast<double>(there.mesh.triangles.size()),
+              1, 0.05);
+}
+
+/// Ten times as long along the axis, on an open cylinder.
+TEST(Surface, FollowsAnAnisotropicMetric) {
+  const AnyMesh mesh = cylinder(48, false);
+  AnyField metric = constant_metric(mesh, 0.03);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) metric.values[6 * v + 5] /= 100;
+  const AdaptedMesh adapted = adapted_to(mesh, metric, within(0.005));
+  const MeshStatistics statistics = measure(two(), adapted.mesh, &adapted.metric);
+  EXPECT_GT(statistics.share_in_range(), 0.85);
+  EXPECT_GT(statistics.quality.mean, 0.85);
+}
+
+TEST(Surface, IsTheSameAtAnyNumberOfThreads) {
+  const AnyMesh mesh = cylinder(40, true);
+  const AnyField metric = constant_metric(mesh, 0.05);
+  const auto on = [&](int threads) {
+    return adapt(Executor({.threads = threads}), mesh, metric, within(0.004));
+  };
+  const AdaptedMesh first = on(1);
+  for (const int threads : {2, 3, 4, 8}) {
+    SCOPED_TRACE(threads);
+    const AdaptedMesh other = on(threads);
+    EXPECT_EQ(other.mesh, first.mesh);
+    EXPECT_EQ(test::bits(other.metric.values), test::bits(first.metric.values));
+  }
+}
+
+TEST(Surface, OfAScanIsMended) {
+  AnyMesh mesh = sphere(16);
+  std::mt19937 random(3);
+  for (auto& corners : mesh.triangles.vertices)
+    if (random() % 10 == 0) std::swap(corners[0], corners[1]);
+  const auto first = mesh.triangles.vertices[0], second = mesh.triangles.vertices[1];
+  mesh.triangles.add(first, 1);
+  mesh.triangles.add({second[0], second[0], second[1]}, 1);
+  const AdaptedMesh adapted = adapt(two(), mesh, constant_metric(mesh, 0.2), within(0.01));
+  EXPECT_EQ(euler(adapted.mesh), 2);
+  EXPECT_NEAR(std::abs(volume(adapted.mesh)) / (4 * std::numbers::pi / 3), 1, 0.05);
+  std::string all;
+  for (const std::string& warning : adapted.report.warnings) all += warning + "\n";
+  for (const char* said : {"have no area", "are listed twice", "were turned"})
+    EXPECT_NE(all.find(said), std::string::npos) << all;
+}
+
+/// A Moebius strip has one side only.
+TEST(Surface, OfOneSideIsAdapted) {
+  const auto strip = [](double u, double v) {
+    const double a = 2 * std::numbers::pi * u, r = 1 + 0.4 * (v - 0.5) * std::cos(a / 2);
+    return Vector<3>{{r * std::cos(a), r * std::sin(a), 0.4 * (v - 0.5) * std::sin(a / 2)}};
+  };
+  const AnyMesh mesh = welded({sheet(60, 4, strip)});
+  ASSERT_EQ(euler(mesh), 0);
+  const AdaptedMesh adapted = adapted_to(mesh, 0.08, within(0.005));
+  EXPECT_EQ(euler(adapted.mesh), 0);
+  EXPECT_EQ(non_manifold(adapted.mesh), 0);
+}
+
+TEST(Surface, KeepsWhatIsRequired) {
+  AnyMesh mesh = sphere(24);
+  mesh.required_vertices = {7, 100};
+  mesh.required_triangles = {200, 201};
+  const AdaptedMesh adapted = adapted_to(mesh, 0.3, within(0.02));
+  ASSERT_EQ(adapted.mesh.required_triangles.size(), 2U);
+  const auto has = [&](const Vector<3>& point) {
+    for (std::uint32_t v = 0; v < adapted.mesh.vertex_count(); ++v)
+      if (at(adapted.mesh, v) == point) return true;
+    return false;
+  };
+  for (const std::uint32_t v : mesh.required_vertices) EXPECT_TRUE(has(at(mesh, v)));
+  for (const std::uint32_t t : mesh.required_triangles)
+    for (const std::uint32_t v : mesh.triangles.vertices[t]) EXPECT_TRUE(has(at(mesh, v)));
+}
+
+/// Random sizes, folds, holes and noise: all results are valid.
+TEST(Surface, IsValidHoweverItIs) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto uniform = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const double a = uniform(0, 0.3), b = uniform(2, 9), c = uniform(0, 0.2), noise = uniform(0, 1);
+    const bool closed = seed % 3 != 0;
+    const int n = 8 + static_cast<int>(random() % 20);
+    const auto bumpy = [&](double u, double v) {
+      const Vector<3> p = closed ? on_sphere(u, v) : Vector<3>{{2 * u, 2 * v, 0}};
+      const double h = a * std::sin(b * p[0]) * std::cos(b * p[1]) + c * std::sin(2 * b * p[0]);
+      return closed ? (1 + h) * p : p + Vector<3>{{0, 0, h}};
+    };
+    AnyMesh mesh = welded({sheet(closed ? 2 * n : n, n, bumpy, closed)});
+    const double size = uniform(0.05, 0.6), tolerance = seed % 4 == 0 ? 0 : uniform(0.002, 0.05);
+    if (seed % 2 == 0)
+      for (double& x : mesh.coordinates) x += uniform(-1, 1) * noise * tolerance / 3;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      mesh.triangles.reference[t] = at(mesh, mesh.triangles.vertices[t][0])[1] > 0.3 ? 1 : 2;
+    if (seed % 5 == 0)  // holes
+      for (std::size_t t = 7; t < mesh.triangles.size(); t += 31)
+        mesh.triangles.vertices[t] = mesh.triangles.vertices[t - 1];
+    const AdaptedMesh adapted = adapt(two(), mesh, constant_metric(mesh, size), within(tolerance));
+    EXPECT_TRUE(check_mesh(two(), adapted.mesh).empty());
+    EXPECT_EQ(non_manifold(adapted.mesh), 0);
+    EXPECT_EQ(areas(adapted.mesh).size(), areas(mesh).size());
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt::surface_test
