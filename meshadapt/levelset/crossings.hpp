@@ -54,13 +54,13 @@ inline double zero_of(double from, double to, double bend) {
   return std::clamp(-from / (half + std::copysign(root, half)), 0.0, 1.0);
 }
 
-/// Moves crossings to where the quadratic along the edge is 0 that has the function's values at the
-/// ends and the difference of the slopes recovered there. Where slopes do not explain the values,
-/// as at a kink, they stay where they are.
+/// Moves crossings to where a quadratic along the edge is 0 that has the function's values at the
+/// ends. It is bent by half the difference of the slopes recovered there, less where the mean slope
+/// does not explain the values, as at a kink.
 template <int Dim>
 void bend_crossings(const runtime::Executor& executor, const CutDomain<Dim>& domain,
                     std::span<const double> function_of, std::span<Crossing> crossings) {
-  constexpr double most_bend = 0.9, most_unexplained = 0.4;
+  constexpr double most_bend = 0.9;  // of the difference of the values; below 1, see zero_of()
   std::vector<VertexId> ends;
   for (const Crossing& edge : crossings) ends.insert(ends.end(), {edge.a, edge.b});
   runtime::parallel_sort<VertexId>(executor, ends);
@@ -76,9 +76,10 @@ void bend_crossings(const runtime::Executor& executor, const CutDomain<Dim>& dom
     };
     const double from = function_of[a], to = function_of[b], at_a = slope(a), at_b = slope(b);
     const double bend = 0.5 * (at_a - at_b), unexplained = to - from - 0.5 * (at_a + at_b);
-    if (from * to >= 0 || !(std::abs(unexplained) <= most_unexplained * std::abs(bend))) return;
+    if (from * to >= 0 || !(bend * bend > 0)) return;
+    const double trust = bend * bend / (bend * bend + unexplained * unexplained);
     const double most = most_bend * std::abs(to - from);
-    t = zero_of(from, to, std::clamp(bend, -most, most));
+    t = zero_of(from, to, std::clamp(trust * bend, -most, most));
   });
 }
 
