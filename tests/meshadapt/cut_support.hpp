@@ -159,12 +159,16 @@ std::array<Vector<Dim>, Dim + 1> points(const AnyMesh& mesh, std::size_t element
   return p;
 }
 
+/// Are all elements thicker than what rounding does to new vertices?
 template <int Dim>
 bool is_valid(const AnyMesh& mesh) {
-  for (std::size_t e = 0; e < elements_in<Dim>(mesh).size(); ++e)
-    if (orientation<Dim>(points<Dim>(mesh, e)) <= 0 ||
-        !(plain_determinant(points<Dim>(mesh, e)) > 0))
+  for (std::size_t e = 0; e < elements_in<Dim>(mesh).size(); ++e) {
+    const auto p = points<Dim>(mesh, e);
+    double longest = 0;
+    for (const auto& q : p) longest = std::max(longest, norm(q - p[0]));
+    if (orientation<Dim>(p) <= 0 || plain_determinant(p) < 1e-13 * std::pow(longest, Dim))
       return false;
+  }
   return true;
 }
 
