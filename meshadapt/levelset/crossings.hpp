@@ -59,7 +59,7 @@ inline double zero_of(double from, double to, double bend) {
 template <int Dim>
 void bend_crossings(const runtime::Executor& executor, const CutDomain<Dim>& domain,
                     std::span<const double> function_of, std::span<Crossing> crossings) {
-  constexpr double most_bend = 0.9;
+  constexpr double most_bend = 0.9;  // of the difference of the values; below 1, see zero_of()
   std::vector<VertexId> ends;
   for (const Crossing& edge : crossings) ends.insert(ends.end(), {edge.a, edge.b});
   runtime::parallel_sort<VertexId>(executor, ends);

@@ -149,10 +149,13 @@ class Snapping {
   /// New vertices are not exactly on their edges. Where that would turn an element over, they are
   /// put elsewhere on them, and in the end the surface goes through the ends of the edges.
   void make_volumes_certain() {
-    constexpr std::array<double, 7> other_parts = {0.5, 0.25, 0.75, 0.375, 0.625, 0.3125, 0.6875};
+    constexpr int most_tries = 40;
+    constexpr double golden_ratio = 0.6180339887498949;  // spreads the places evenly
     auto bad = inverted();
-    for (std::size_t k = 0; k < other_parts.size() && !bad.empty(); ++k, bad = inverted())
-      each_cut(bad, [&](Crossing& edge) { edge.t = other_parts[k]; });
+    for (int k = 0; k < most_tries && !bad.empty(); ++k, bad = inverted()) {
+      const double other = std::fmod(0.5 + k * golden_ratio, 1.0);
+      each_cut(bad, [&](Crossing& edge) { edge.t = 0.2 + 0.6 * other; });
+    }
     for (; !bad.empty(); bad = inverted()) {
       const std::size_t before = snapped_.crossings.size();
       each_cut(bad, [&](Crossing& edge) {
