@@ -179,7 +179,7 @@ void PatchNormals::find_rims() {
 // ---- Normals ----
 
 Samples<3, 3> PatchNormals::samples() const {
-  constexpr double near = 0.98;
+  constexpr double near = 0.99;
   Samples<3, 3> result;
   result.all.resize(normal_of_.size());
   parallel_for(executor_, result.all.size(), [&](std::size_t i) {

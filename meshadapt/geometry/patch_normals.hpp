@@ -35,7 +35,7 @@ class PatchNormals {
     return normal_of_[node_of_[facet][corner]];
   }
 
-  /// Each vertex of a smooth patch. Where the normal is turned by more than 11 degrees against the
+  /// Each vertex of a smooth patch. Where the normal is turned by more than 8 degrees against the
   /// mean of the facets there it is that of needles, and the mean counts.
   Samples<3, 3> samples() const;
 
