@@ -121,7 +121,7 @@ def test_options(mesh, dim):
     assert mesh.cut(bars).level_set.report.removed_components == 0
     assert mesh.cut(bars, least_component=0.01).level_set.report.removed_components == 1
     volume = mesh.cut(phi, keep_volume=0.1)
-    assert volumes(volume)[volume.refs == 3].sum() == pytest.approx(0.1, rel=1e-4)
+    assert volumes(volume)[volume.refs == 3].sum() == pytest.approx(0.1, rel=1e-3)
     with pytest.warns(ductile.InputWarning, match="met nowhere"):
         one = mesh.cut(phi, 9)
     assert (one.refs == 3).all() and (one.remesh(hausd=0.02).refs == 3).all()
