@@ -47,8 +47,9 @@ std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Ex
                                                                const GeometryOptions& options) {
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
-  const Mesh<Dim> mesh = (options.in_parts ? make_cut_mesh<Dim> : make_mesh<Dim>)(
-      executor, any, options_of(options), neighbours, warnings);
+  const Mesh<Dim> mesh =
+      (options.in_parts ? make_cut_mesh<Dim> : make_mesh<Dim>)(executor, any, options_of(options),
+                                                               neighbours, warnings);
   return reference_of(mesh.surface, options.in_parts, mesh.patches, mesh.curves);
 }
 

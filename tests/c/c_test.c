@@ -494,8 +494,8 @@ static void test_surface(void) {
   double corners[24];
   for (int v = 0; v < 8; ++v)
     for (int i = 0; i < 3; ++i) corners[3 * v + i] = v >> i & 1;
-  const int32_t faces[] = {0, 2, 1, 1, 2, 3, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7,
-                           0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  const int32_t faces[] = {0, 2, 1, 1, 2, 3, 0, 1, 4, 1, 5, 4, 2, 6, 3,
+                           3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
   const int32_t references[] = {1, 1, 2, 2, 2, 2, 2, 2, 2, 2};
   const double size = .25;
   ductile_mesh *box = NULL, *adapted = NULL;
