@@ -119,6 +119,15 @@ def curved():
     draw("curved-after", mesh.remesh(0.3, hausd=0.01, hgrad=1.3))
 
 
+def bracket():
+    """A bracket under load, coloured by stress, and adapted to its displacement."""
+    before = ductile.read(os.path.join(HERE, "..", "examples", "bracket.msh"))
+    metric = ductile.metric(before, before.fields["displacement"], elements=8000, hgrad=1.5)
+    after = before.remesh(metric, hausd=0.05, hgrad=1.5)
+    draw("bracket-before", before, before.fields["stress"])
+    draw("bracket-after", after, after.transfer(before.fields["stress"]))
+
+
 def space():
     """Tetrahedra, seen from outside: fine near an edge and a point of the cube."""
     mesh = ductile.box((1, 1, 1), (4, 4, 4))
@@ -128,5 +137,5 @@ def space():
 
 
 if __name__ == "__main__":
-    for idea in (kernels, solution, transfer, places, gradation, regions, required, curved, space):
+    for idea in (kernels, solution, transfer, places, gradation, regions, required, curved, bracket, space):
         idea()

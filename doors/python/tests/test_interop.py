@@ -155,22 +155,6 @@ def test_example_solves_adapts_and_transfers(tmp_path, capsys):
     assert len(integrals) == 3 and max(integrals) - min(integrals) < 1e-5
 
 
-def test_the_guide_runs_as_it_is_written(tmp_path, monkeypatch):
-    guide = pathlib.Path(__file__).parents[3] / "docs" / "python.md"
-    if not guide.exists():
-        pytest.skip("the guide is not beside the package")
-    mesh = ductile.box((1, 1, 1), (3, 3, 3))
-    mesh.save(tmp_path / "part.msh")
-    monkeypatch.chdir(tmp_path)
-    blocks = guide.read_text(encoding="utf-8").split("```python\n")[1:]
-    names = {}
-    for block in blocks:
-        exec(block.split("```")[0], names)  # each goes on where the one before ended
-    assert len(blocks) >= 4 and len(ductile.read("part.vtu").cells) > 1000
-    for picture in ("sizes.svg", "front.svg"):
-        assert "<svg" in (tmp_path / picture).read_text()
-
-
 @pytest.mark.parametrize("components", [(), (1,), (2,), (3,), (4,), (6,), (9,), (2, 2), (3, 3)])
 def test_meshio_writes_all_fields_of_an_adapted_mesh_as_msh_2(dim, components, tmp_path):
     meshio = pytest.importorskip("meshio")
