@@ -47,7 +47,8 @@ const char* ductile_last_error(void);
 
 /* ---- Meshes ---- */
 
-/** An empty mesh of dimension 2 or 3. */
+/** An empty mesh of dimension 2 or 3. One of dimension 3 with facets and no elements is a surface,
+ * whose facets are adapted; ridges are its listed edges. */
 int ductile_mesh_create(int dimension, ductile_mesh** mesh);
 
 /** Sets `count` vertices, replacing all contents except names: coordinates[vertex *

@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/geometry.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/first_bad.hpp"
@@ -10,34 +11,56 @@
 #include "geometry/curvature.hpp"
 #include "geometry/make_mesh.hpp"
 #include "geometry/reference_surface.hpp"
+#include "geometry/surface_mesh.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-template <int Dim>
-std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Executor& executor,
-                                                               const AnyMesh& any,
-                                                               const GeometryOptions& options) {
+MakeMeshOptions options_of(const GeometryOptions& options) {
   MakeMeshOptions make;
   make.hausdorff_tolerance = options.tolerance;
   make.ridge_angle = options.ridge_angle;
   make.complete_boundary = options.complete_boundary;
   make.functions = options.functions;
-  Neighbours<Dim> neighbours;
-  std::vector<std::string> warnings;
-  const Mesh<Dim> mesh =
-      (options.in_parts ? make_cut_mesh<Dim> : make_mesh<Dim>)(executor, any, make, neighbours,
-                                                               warnings);
+  return make;
+}
+
+template <int Dim>
+std::shared_ptr<const ReferenceSurface<Dim>> reference_of(
+    std::shared_ptr<const Surface<Dim>> surface, bool in_parts,
+    const std::vector<Patch<Dim>>& patches, const std::vector<Curve>& curves) {
   auto reference = std::make_shared<ReferenceSurface<Dim>>();
-  reference->surface = mesh.surface;
-  reference->in_parts = options.in_parts;
-  for (const Patch<Dim>& patch : mesh.patches) {
+  reference->surface = std::move(surface);
+  reference->in_parts = in_parts;
+  for (const Patch<Dim>& patch : patches) {
     reference->is_smooth.push_back(patch.smooth ? 1 : 0);
     reference->reference_of.push_back(patch.reference);
   }
-  for (const Curve& curve : mesh.curves) reference->reference_of_curve.push_back(curve.reference);
+  for (const Curve& curve : curves) reference->reference_of_curve.push_back(curve.reference);
   return reference;
+}
+
+template <int Dim>
+std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Executor& executor,
+                                                               const AnyMesh& any,
+                                                               const GeometryOptions& options) {
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  const Mesh<Dim> mesh =
+      (options.in_parts ? make_cut_mesh<Dim> : make_mesh<Dim>)(executor, any, options_of(options),
+                                                               neighbours, warnings);
+  return reference_of(mesh.surface, options.in_parts, mesh.patches, mesh.curves);
+}
+
+/// The same of triangles in space.
+std::shared_ptr<const ReferenceSurface<3>> reference_of_triangles(const runtime::Executor& executor,
+                                                                  const AnyMesh& any,
+                                                                  const GeometryOptions& options) {
+  Neighbours<2> neighbours;
+  std::vector<std::string> warnings;
+  const auto mesh = make_surface_mesh(executor, any, options_of(options), neighbours, warnings);
+  return reference_of(mesh.surface, options.in_parts, mesh.regions, mesh.patches);
 }
 
 template <int Dim>
@@ -88,7 +111,8 @@ Geometry::Geometry(const runtime::Executor& executor, const AnyMesh& mesh,
   if (mesh.dimension == 2)
     plane_ = reference_surface<2>(executor, mesh, options);
   else
-    space_ = reference_surface<3>(executor, mesh, options);
+    space_ = is_surface(mesh) ? reference_of_triangles(executor, mesh, options)
+                              : reference_surface<3>(executor, mesh, options);
 }
 
 std::optional<GeometryPoint> Geometry::closest(const std::array<double, 3>& point,

@@ -7,17 +7,15 @@
 #include <span>
 #include <utility>
 
-#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/sort.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/curvature.hpp"
-#include "geometry/facet_sides.hpp"
 #include "geometry/marked_points.hpp"
 #include "geometry/tag_boundary.hpp"
+#include "geometry/triangle_edges.hpp"
 #include "mesh/neighbours.hpp"
 
 namespace ductile::meshadapt {
@@ -29,9 +27,6 @@ namespace {
 
 /// The number of the facet that is the triangle, in an element without a fourth corner.
 constexpr int boundary_facet = 3;
-
-/// The next corner of a triangle.
-constexpr std::size_t next(std::size_t corner) { return (corner + 1) % 3; }
 
 /// A surface as the boundary of elements that have no fourth corner; without patches and curves.
 Mesh<3> as_boundary(const Executor& executor, const Mesh<2, 3>& mesh) {
@@ -71,7 +66,8 @@ Mesh<3> classified_boundary(const Executor& executor, const Mesh<2, 3>& mesh) {
     for (const ElementId e : around)
       for (std::size_t i = 0; i < 3; ++i)
         if (const CurveId curve = mesh.patches_of[e][i]; curve != 0) {
-          const VertexId a = mesh.corners_of[e][next(i)], b = mesh.corners_of[e][next(next(i))];
+          const VertexId a = mesh.corners_of[e][next_corner(i)],
+                         b = mesh.corners_of[e][next_corner(next_corner(i))];
           if (a == v || b == v) links.push_back({a == v ? b : a, curve});
         }
     std::sort(links.begin(), links.end());
@@ -83,169 +79,6 @@ Mesh<3> classified_boundary(const Executor& executor, const Mesh<2, 3>& mesh) {
   boundary.surface = mesh.surface;
   return boundary;
 }
-
-/// An edge of a triangle. Corners turn from `from` to the other end.
-struct TriangleEdge {
-  SideKey key;
-  ElementId triangle;
-  VertexId from;
-  friend auto operator<=>(const TriangleEdge&, const TriangleEdge&) = default;
-};
-
-/// Edges that are passed by triangles, of two by both in the same direction.
-class Edges {
- public:
-  Edges(const Executor& executor, const std::vector<Corners<2>>& triangles)
-      : edges_(runtime::make_unset_vector<TriangleEdge>(executor, 3 * triangles.size())) {
-    parallel_for(executor, triangles.size(), [&](std::size_t e) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const VertexId a = triangles[e][i], b = triangles[e][next(i)];
-        edges_[3 * e + i] = {edge_key(a, b), static_cast<ElementId>(e), a};
-      }
-    });
-    runtime::parallel_sort(executor, std::span(edges_));
-  }
-
-  /// Calls visit(run) with the passes of each edge.
-  void each(auto&& visit) const {
-    for (std::size_t begin = 0, end = 0; begin < edges_.size(); begin = end) {
-      while (end < edges_.size() && edges_[end].key == edges_[begin].key) ++end;
-      visit(std::span(edges_).subspan(begin, end - begin));
-    }
-  }
-
-  /// Edges of two triangles that are turned in opposite ways.
-  std::vector<SideKey> seams() const {
-    std::vector<SideKey> seams;
-    each([&](std::span<const TriangleEdge> run) {
-      if (run.size() == 2 && run[0].from == run[1].from) seams.push_back(run[0].key);
-    });
-    return seams;
-  }
-
-  /// The other triangle at an edge of two, and whether it is turned in the opposite way.
-  std::pair<ElementId, bool> across(SideKey key, ElementId triangle) const {
-    const auto at = std::lower_bound(edges_.begin(), edges_.end(), TriangleEdge{key, 0, 0});
-    if (edges_.end() - at < 2 || at[1].key != key || (edges_.end() - at > 2 && at[2].key == key))
-      return {none, false};
-    return {at[0].triangle == triangle ? at[1].triangle : at[0].triangle, at[0].from == at[1].from};
-  }
-
- private:
-  runtime::UnsetVector<TriangleEdge> edges_;  // sorted
-};
-
-/// Leaves triangles out and turns them, see mended_surface().
-class SurfaceMender {
- public:
-  SurfaceMender(const Executor& executor, const AnyMesh& any, std::vector<std::string>& warnings)
-      : executor_(executor), any_(any), warnings_(warnings) {}
-
-  std::optional<AnyMesh> run() {
-    choose();
-    orient();
-    if (warnings_said_ == 0) return std::nullopt;
-    AnyMesh mended = any_;
-    mended.triangles.vertices = corners_;
-    for (std::size_t e = 0; e < chosen_.size(); ++e)
-      mended.triangles.reference[e] = any_.triangles.reference[chosen_[e]];
-    mended.triangles.reference.resize(chosen_.size());
-    mended.required_triangles.clear();
-    const auto required = marked(any_, any_.triangles.size(), any_.required_triangles, "triangle");
-    for (std::uint32_t e = 0; e < chosen_.size(); ++e)
-      if (required[chosen_[e]]) mended.required_triangles.push_back(e);
-    return mended;
-  }
-
- private:
-  std::array<Vector<3>, 3> points(std::size_t t) const {
-    std::array<Vector<3>, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = position_in<3>(any_, any_.triangles.vertices[t][i]);
-    return p;
-  }
-
-  /// Lists the triangles that have an area, each once.
-  void choose() {
-    const auto& triangles = any_.triangles.vertices;
-    using Keyed = std::pair<std::array<VertexId, 3>, std::uint32_t>;
-    auto keyed = runtime::make_unset_vector<Keyed>(executor_, triangles.size());
-    std::vector<std::uint8_t> left_out(triangles.size(), 0);
-    parallel_for(executor_, triangles.size(), [&](std::size_t t) {
-      keyed[t] = {triangles[t], static_cast<std::uint32_t>(t)};
-      std::sort(keyed[t].first.begin(), keyed[t].first.end());
-      const auto [a, b, c] = points(t);
-      if (!(certain_area(a, b, c) > 0)) left_out[t] = 1;
-    });
-    runtime::parallel_sort(executor_, std::span(keyed));
-    for (std::size_t i = 1; i < keyed.size(); ++i)
-      if (keyed[i].first == keyed[i - 1].first && left_out[keyed[i].second] == 0)
-        left_out[keyed[i].second] = 2;
-    report(left_out, 1, "have no area and are left out");
-    report(left_out, 2, "are listed twice and are left out");
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-      if (left_out[t] == 0) chosen_.push_back(t);
-    if (chosen_.empty()) refuse_mesh(any_, "expected triangles with an area, found none");
-  }
-
-  void report(const std::vector<std::uint8_t>& flags, std::uint8_t flag, const std::string& what) {
-    const auto first = std::find(flags.begin(), flags.end(), flag);
-    if (first == flags.end()) return;
-    ++warnings_said_;
-    warnings_.push_back(any_.name + ": " +
-                        std::to_string(std::count(flags.begin(), flags.end(), flag)) + " of " +
-                        std::to_string(flags.size()) + " triangles " + what + "; the first is " +
-                        entity("triangle", static_cast<std::size_t>(first - flags.begin())));
-  }
-
-  // ---- Orientation: neighbours pass their common edge in opposite directions ----
-
-  void orient() {
-    corners_.resize(chosen_.size());
-    parallel_for(executor_, chosen_.size(),
-                 [&](std::size_t e) { corners_[e] = any_.triangles.vertices[chosen_[e]]; });
-    const Edges edges(executor_, corners_);
-    if (edges.seams().empty()) return;
-    std::vector<std::uint8_t> turned(corners_.size(), none_yet);
-    std::vector<ElementId> part;
-    for (ElementId seed = 0; seed < corners_.size(); ++seed)
-      if (turned[seed] == none_yet) turn_part(edges, seed, turned, part);
-    std::vector<std::uint8_t> listed(any_.triangles.size(), 0);
-    for (std::size_t e = 0; e < corners_.size(); ++e) {
-      listed[chosen_[e]] = turned[e];
-      if (turned[e] != 0) std::swap(corners_[e][1], corners_[e][2]);
-    }
-    report(listed, 1, "were turned as most of their neighbours are");
-  }
-
-  /// Turns what is connected with a triangle by edges of two as that is, or as most of it is.
-  void turn_part(const Edges& edges, ElementId seed, std::vector<std::uint8_t>& turned,
-                 std::vector<ElementId>& part) const {
-    part.assign(1, seed);
-    turned[seed] = 0;
-    std::size_t count = 0;
-    for (std::size_t at = 0; at < part.size(); ++at)
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto& corners = corners_[part[at]];
-        const auto [other, opposite] =
-            edges.across(edge_key(corners[i], corners[next(i)]), part[at]);
-        if (other == none || turned[other] != none_yet) continue;
-        turned[other] = turned[part[at]] ^ static_cast<std::uint8_t>(opposite);
-        count += turned[other];
-        part.push_back(other);
-      }
-    if (2 * count > part.size())
-      for (const ElementId e : part) turned[e] ^= 1U;
-  }
-
-  static constexpr std::uint8_t none_yet = 2;
-
-  const Executor& executor_;
-  const AnyMesh& any_;
-  std::vector<std::string>& warnings_;
-  std::size_t warnings_said_ = 0;
-  std::vector<std::uint32_t> chosen_;  // [triangle], its number in the file
-  std::vector<Corners<2>> corners_;    // [triangle]
-};
 
 class SurfaceMeshMaker {
  public:
@@ -367,8 +200,8 @@ class SurfaceMeshMaker {
     parallel_for(executor_, mesh_.element_slots(), [&](std::size_t e) {
       mesh_.region_of[e] = boundary.patches_of[e][boundary_facet];
       for (std::size_t i = 0; i < 3; ++i)
-        mesh_.patches_of[e][i] =
-            boundary.curve_of(corners_[e][next(i)], corners_[e][next(next(i))]);
+        mesh_.patches_of[e][i] = boundary.curve_of(corners_[e][next_corner(i)],
+                                                   corners_[e][next_corner(next_corner(i))]);
     });
     mark_crack_sides(boundary);
     mesh_.patches = std::move(boundary.curves);
@@ -401,7 +234,7 @@ class SurfaceMeshMaker {
   std::vector<std::string>& warnings_;
   Mesh<2, 3> mesh_;
   const std::vector<Corners<2>>& corners_;  // [element]
-  Edges edges_;
+  TriangleEdges edges_;
 };
 
 }  // namespace
@@ -409,16 +242,8 @@ class SurfaceMeshMaker {
 Mesh<2, 3> make_surface_mesh(const Executor& executor, const AnyMesh& any,
                              const MakeMeshOptions& options, Neighbours<2>& neighbours,
                              std::vector<std::string>& warnings) {
-  check_input<2, 3>(executor, any, options);
-  const auto mended = SurfaceMender(executor, any, warnings).run();
+  const auto mended = mended_surface(executor, any, options, warnings);
   return SurfaceMeshMaker(executor, mended ? *mended : any, options, neighbours, warnings).make();
-}
-
-std::optional<AnyMesh> mended_surface(const Executor& executor, const AnyMesh& any,
-                                      const MakeMeshOptions& options,
-                                      std::vector<std::string>& warnings) {
-  check_input<2, 3>(executor, any, options);
-  return SurfaceMender(executor, any, warnings).run();
 }
 
 void bound_curved_sizes(const Executor& executor, const Mesh<2, 3>& mesh, double tolerance,

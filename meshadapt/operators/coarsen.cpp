@@ -4,6 +4,7 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/edges.hpp"
 
 namespace ductile::meshadapt {

@@ -7,6 +7,7 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/rounding.hpp"
 #include "geometry/surface.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/cavity.hpp"
 
 namespace ductile::meshadapt {

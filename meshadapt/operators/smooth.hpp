@@ -11,6 +11,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "operators/background.hpp"
 #include "operators/ball.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/edge_range.hpp"
 #include "operators/surface_ball.hpp"
 

@@ -3,6 +3,7 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/swap.hpp"
 
 namespace ductile::meshadapt {

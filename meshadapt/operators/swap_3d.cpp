@@ -5,6 +5,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "operators/base.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/cut_off.hpp"
 #include "operators/ring.hpp"
 #include "operators/star.hpp"

@@ -513,6 +513,49 @@ static void test_moving(void) {
   ductile_mesh_destroy(mesh);
 }
 
+/* The area of the triangles with a reference. */
+static double area_of(const ductile_mesh* mesh, int32_t reference) {
+  const double* x = ductile_mesh_coordinates(mesh);
+  double area = 0;
+  for (int64_t f = 0; f < ductile_mesh_count(mesh, DUCTILE_FACETS); ++f) {
+    if (ductile_mesh_references(mesh, DUCTILE_FACETS)[f] != reference) continue;
+    const int32_t* c = ductile_mesh_corners(mesh, DUCTILE_FACETS) + 3 * f;
+    const double *p = x + 3 * c[0], *q = x + 3 * c[1], *r = x + 3 * c[2];
+    double squares = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const double normal = (q[j] - p[j]) * (r[k] - p[k]) - (q[k] - p[k]) * (r[j] - p[j]);
+      squares += normal * normal;
+    }
+    area += .5 * sqrt(squares);
+  }
+  return area;
+}
+
+/* Facets without elements are a surface: the faces of a cube, but for its top. */
+static void test_surface(void) {
+  double corners[24];
+  for (int v = 0; v < 8; ++v)
+    for (int i = 0; i < 3; ++i) corners[3 * v + i] = v >> i & 1;
+  const int32_t faces[] = {0, 2, 1, 1, 2, 3, 0, 1, 4, 1, 5, 4, 2, 6, 3,
+                           3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  const int32_t references[] = {1, 1, 2, 2, 2, 2, 2, 2, 2, 2};
+  const double sizes[] = {.25, .25, .25, .25, .25, .25, .25, .25};
+  ductile_mesh *box = NULL, *adapted = NULL;
+  EXPECT(ductile_mesh_create(3, &box) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(box, 8, corners, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_facets(box, 10, faces, references) == DUCTILE_OK);
+  EXPECT(ductile_mesh_count(box, DUCTILE_FACETS) == 10);
+  EXPECT(ductile_adapt(box, 1, sizes, NULL, &adapted) == DUCTILE_OK);
+  EXPECT(ductile_mesh_dimension(adapted) == 3 &&
+         ductile_mesh_count(adapted, DUCTILE_ELEMENTS) == 0);
+  const int64_t count = ductile_mesh_count(adapted, DUCTILE_FACETS);
+  EXPECT(count > 120 && count < 320);
+  EXPECT(fabs(area_of(adapted, 1) - 1) < 1e-12 && fabs(area_of(adapted, 2) - 4) < 1e-12);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(box);
+}
+
 /* The piece of C in docs/c-and-fortran.md. */
 static void test_guide(void) {
   const double *points = square, sizes[] = {0.1, 0.1, 0.1, 0.1};
@@ -679,6 +722,7 @@ int main(void) {
   test_sizes();
   test_geometry();
   test_moving();
+  test_surface();
   test_guide();
   test_level_sets();
   test_signed_distance();

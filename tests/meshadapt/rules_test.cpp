@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "operators/background.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/edges.hpp"
 #include "operators/refine.hpp"

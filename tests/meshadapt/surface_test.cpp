@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <set>
@@ -17,6 +18,8 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/bits.hpp"
@@ -337,6 +340,26 @@ TEST(Surface, OfOneSideIsAdapted) {
   const AdaptedMesh adapted = adapted_to(mesh, 0.08, within(0.005));
   EXPECT_EQ(euler(adapted.mesh), 0);
   EXPECT_EQ(non_manifold(adapted.mesh), 0);
+}
+
+/// However often it is adapted, also from coarse to fine.
+TEST(Surface, StaysOnItsGeometry) {
+  AdaptOptions options = within(0.01);
+  const AnyMesh first = hemisphere(32);
+  options.make.geometry = std::make_shared<const Geometry>(
+      two(), first, GeometryOptions{.tolerance = options.make.hausdorff_tolerance});
+  AnyMesh mesh = first;
+  for (const double size : {0.3, 0.1, 0.25, 0.06, 0.2, 0.05}) {
+    SCOPED_TRACE(size);
+    mesh = adapted_to(mesh, size, options).mesh;
+    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
+      ASSERT_NEAR(norm(at(mesh, v)), 1, 0.003);
+    EXPECT_NEAR(rims(mesh), 2 * std::numbers::pi, 0.06);
+  }
+  EXPECT_NEAR(areas(mesh)[1], 2 * std::numbers::pi, 0.02);
+  AnyMesh other = sphere(8);
+  for (double& x : other.coordinates) x += 3;
+  EXPECT_THROW(adapt(two(), other, constant_metric(other, 0.1), options), InputError);
 }
 
 TEST(Surface, KeepsWhatIsRequired) {

@@ -65,10 +65,12 @@ def parts(tmp_path_factory):
     fine.metric = None
     fine.save(folder / "fine.vtu")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ductile.InputWarning)  # names have no place in a .mesh
+        warnings.simplefilter("ignore", ductile.InputWarning)  # names have no place in these
         for name, saved in (("part", mesh), ("start", mesh), ("step3", fine)):
             saved.save(folder / f"{name}.mesh")
             ductile.save_field(folder / f"{name}.sol", saved, np.full(len(saved.points), 0.02))
+        for name in ("part.stl", "scan.ply"):
+            ductile.Mesh(mesh.points, mesh.facets).save(folder / name)
     box = ductile.box((1, 1), (8, 8))
     box.replace(refs=1 + (box.points[box.cells].mean(axis=1)[:, 0] > 0.5)).save(folder / "square.mesh")
     return folder

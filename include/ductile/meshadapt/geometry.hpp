@@ -45,9 +45,9 @@ struct GeometryPoint {
 /// A smooth model of curved boundaries. Copies share their data. Thread safety: any thread.
 class Geometry {
  public:
-  /// Makes a smooth model of the boundary and interfaces of a mesh: facets that meet at less than
-  /// the ridge angle are parts of one smooth surface. Throws InputError if the mesh is not valid or
-  /// an option is out of range, std::bad_alloc. Runs on the executor.
+  /// Makes a smooth model of the boundary and interfaces of a mesh, or of a surface alone: facets
+  /// that meet at less than the ridge angle are parts of one smooth surface. Throws InputError if
+  /// the mesh is not valid or an option is out of range, std::bad_alloc. Runs on the executor.
   Geometry(const runtime::Executor& executor, const AnyMesh& mesh, const GeometryOptions& options);
 
   int dimension() const { return plane_ ? 2 : 3; }
