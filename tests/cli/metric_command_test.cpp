@@ -199,7 +199,8 @@ TEST(MetricCommand, TellsWhatIsWrongWithACommandLine) {
     EXPECT_EQ(outcome.status, 2) << words;
     EXPECT_TRUE(contains(outcome.err, part)) << words << ": " << outcome.err;
   };
-  expect("", "expected make, size, distance, implied, intersect, scale, bound or grade, found nothing");
+  expect("",
+         "expected make, size, distance, implied, intersect, scale, bound or grade, found nothing");
   expect("mak a.mesh a.sol -o b.sol", "found 'mak'");
   expect("make a.mesh -o b.sol --error 1", "expected a mesh and a field, found 1 file");
   expect("implied a.mesh a.sol -o b.sol", "expected a mesh, found 2 files");

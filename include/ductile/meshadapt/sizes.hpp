@@ -118,7 +118,8 @@ struct LocalSize {
 /// Reads Mmg's parameter file, NAME.mmg2d or NAME.mmg3d: the word Parameters, a count, and for each
 /// entry reference, kind of entity (Vertex, Edge, Triangle, Tetrahedron or their plurals), hmin,
 /// hmax and hausd; case is ignored, '#' starts a comment. Numbers of 0 or less mean nothing.
-/// Settings for level sets (read_level_set_references()) are ignored, with a line in `warnings`. Throws InputError
+/// Settings for level sets (read_level_set_references()) are ignored, with a line in `warnings`.
+/// Throws InputError
 /// ("FILE:LINE: expected, found") for anything else. Thread safety: any thread.
 std::vector<LocalSize> read_local_sizes(const std::filesystem::path& path,
                                         Warnings* warnings = nullptr);
