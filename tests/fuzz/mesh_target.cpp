@@ -13,6 +13,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "geometry/make_mesh.hpp"
+#include "geometry/surface_mesh.hpp"
 #include "io/formats.hpp"
 #include "oracle.hpp"
 
@@ -101,18 +102,14 @@ void expect_round_trip_in_space(AnyMesh mesh, std::size_t choice) {
   expect_same(mesh, file);
 }
 
-template <int Dim>
-void make(const AnyMesh& mesh) {
+void make(auto&& maker) {
   for (const double tolerance : {0.0, 0.01}) {
     meshadapt::MakeMeshOptions options;
     options.complete_boundary = true;
     options.hausdorff_tolerance = tolerance;
-    meshadapt::Neighbours<Dim> neighbours;
     meshadapt::Warnings warnings;
     try {
-      meshadapt::Mesh<Dim> made =
-          meshadapt::make_mesh<Dim>(executor(), mesh, options, neighbours, warnings);
-      const auto back = meshadapt::take_apart<Dim>(executor(), std::move(made));
+      const auto back = meshadapt::take_apart(executor(), maker(options, warnings));
       expect(meshadapt::check_mesh(executor(), back.mesh).empty(),
              "a mesh that was made is no mesh");
     } catch (const meshadapt::InputError& error) {
@@ -120,6 +117,21 @@ void make(const AnyMesh& mesh) {
     }
     expect_messages(warnings);
   }
+}
+
+template <int Dim>
+void make(const AnyMesh& mesh) {
+  make([&](const meshadapt::MakeMeshOptions& options, meshadapt::Warnings& warnings) {
+    meshadapt::Neighbours<Dim> neighbours;
+    return meshadapt::make_mesh<Dim>(executor(), mesh, options, neighbours, warnings);
+  });
+}
+
+void make_surface(const AnyMesh& mesh) {
+  make([&](const meshadapt::MakeMeshOptions& options, meshadapt::Warnings& warnings) {
+    meshadapt::Neighbours<2> neighbours;
+    return meshadapt::make_surface_mesh(executor(), mesh, options, neighbours, warnings);
+  });
 }
 
 /// False if areas and volumes would overflow; such meshes are not adapted.
@@ -140,6 +152,8 @@ void use(const AnyMesh& mesh) {
   meshadapt::measure(executor(), mesh, nullptr);
   if (mesh.dimension == 2)
     make<2>(mesh);
+  else if (is_surface(mesh))
+    make_surface(mesh);
   else
     make<3>(mesh);
 }
