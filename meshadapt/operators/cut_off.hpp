@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ductile/meshadapt/adapt_options.hpp"
+#include "operators/boundary_shape.hpp"
 #include "operators/cavity.hpp"
 #include "operators/ring.hpp"
 
