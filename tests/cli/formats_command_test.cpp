@@ -38,7 +38,8 @@ class FormatsCommand : public testing::Test {
     const std::string walls = info.substr(at, info.find_first_of(",\n", at) - at);
     for (const std::string& part : std::vector<std::string>{
              R"({"name": "corner", "dimension": 0, "reference": 3, "count": 1})",
-             R"({"name": "wall", "dimension": 1, "reference": 5, "count": )" + walls + "}",
+             R"({"name": "wall", "dimension": 1, "reference": 5, "count": )" + walls +
+                 R"(, "size": )",
              R"({"name": "steel", "dimension": 2, "reference": 10, "count": )",
              R"({"name": "soft rubber", "dimension": 2, "reference": 20, "count": )"})
       EXPECT_TRUE(contains(json, part)) << part << mesh << "\n" << json;
