@@ -48,6 +48,22 @@ def not_said(output, said):
     return [line for line in shapes(output) if line not in shapes(said)]
 
 
+def save_bodies(folder):
+    """box.vtu with a ball's function, and blade.mesh, whose blade turns so little that its mesh stays."""
+    box = ductile.box((1, 1, 1), (8, 8, 8))
+    box.save(folder / "box.vtu", fields={"phi": np.linalg.norm(box.points - 0.5, axis=1) - 0.3})
+    square = ductile.box((1, 1), (12, 12))
+    across = (square.points - 0.5) * [2, 4]
+    blade = square.cut(np.linalg.norm(across, axis=1) - 0.5).remesh(1 / 12, hausd=0.002)
+    turn = np.zeros_like(blade.points)
+    inside = np.unique(blade.cells[blade.refs == 3])
+    turn[inside] = 0.01 * (blade.points[inside] - 0.5)[:, ::-1] * [-1, 1]
+    blade.metric = None
+    blade.save(folder / "blade.mesh")
+    for name in ("turn", "turn2"):
+        ductile.save_field(folder / f"{name}.sol", blade, turn)
+
+
 @pytest.fixture(scope="session")
 def parts(tmp_path_factory):
     """A folder with the files that the pages name: bracket.*, and part.*, which is a fifth of a unit long."""
@@ -71,6 +87,7 @@ def parts(tmp_path_factory):
             ductile.save_field(folder / f"{name}.sol", saved, np.full(len(saved.points), 0.02))
         for name in ("part.stl", "scan.ply"):
             ductile.Mesh(mesh.points, mesh.facets).save(folder / name)
+    save_bodies(folder)
     box = ductile.box((1, 1), (8, 8))
     box.replace(refs=1 + (box.points[box.cells].mean(axis=1)[:, 0] > 0.5)).save(folder / "square.mesh")
     return folder
