@@ -213,11 +213,7 @@ class LevelSetSizes : public MetricSource {
   bool is_resolved_ = false;
 };
 
-}  // namespace
-
-AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
-                                const AnyField& metric, const PointFunction& function,
-                                const LevelSetSizesOptions& sizes, const AdaptOptions& options) {
+void expect_sizes(const PointFunction& function, const LevelSetSizesOptions& sizes) {
   if (!function) throw InputError("level set: expected a function, found none");
   if (!(sizes.tolerance >= smallest_size && sizes.tolerance <= largest_size))
     throw InputError("level set: expected a tolerance from 1e-75 to 1e75, found " +
@@ -225,6 +221,14 @@ AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
   if (!(sizes.smallest_size >= 0 && sizes.smallest_size <= largest_size))
     throw InputError("level set: expected a smallest size from 0 to 1e75, found " +
                      number(sizes.smallest_size));
+}
+
+}  // namespace
+
+AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
+                                const AnyField& metric, const PointFunction& function,
+                                const LevelSetSizesOptions& sizes, const AdaptOptions& options) {
+  expect_sizes(function, sizes);
   AnyField finer = metric_of(metric, mesh, {options.smallest_size, options.largest_size});
   const Wanted wanted{function, sizes};
   if (!wanted.refine(executor, mesh, finer)) return {mesh, finer, {}};

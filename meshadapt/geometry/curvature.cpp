@@ -157,8 +157,9 @@ class ChordSizes {
   /// In a direction, that of the flat parts around: to divide these brings nothing closer.
   double least_size(const Vector<Dim>& direction, double near) const {
     double least = 2 * tolerance_;
-    for (const auto& [distance, sample] : found_) {
-      if (distance > near && found_.size() >= 8) continue;
+    for (const auto& found : found_) {
+      const std::uint32_t sample = found.second;
+      if (found.first > near && found_.size() >= 8) continue;
       least = std::max(least, width_at_[sample]);
       each_next(sample, [&](std::uint32_t next) {
         least = std::max(least, extent(position(next) - position(sample), direction));

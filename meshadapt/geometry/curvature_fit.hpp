@@ -19,8 +19,8 @@ namespace ductile::meshadapt {
 /// on spheres, cylinders and circles, however far away the places are.
 template <int Dim, std::size_t Corners>
 class CurvatureFit {
-  static constexpr std::size_t places = Corners - 1;            // coordinates along it
-  static constexpr std::size_t turns = Corners == 3 ? 2 : Dim;  // of a change of directions
+  static constexpr std::size_t places = Corners - 1;  // coordinates along it
+  static constexpr std::size_t turns = std::min<std::size_t>(Dim, 5 - Corners);  // of directions
   using Tensor = std::array<std::array<double, places>, turns>;
 
  public:

@@ -96,7 +96,7 @@ class Walls {
         stop(static_cast<VertexId>(v));
   }
 
-  std::vector<std::int8_t> rank_of_;    // [vertex], dimensions that walls take away
+  std::vector<std::uint8_t> rank_of_;   // [vertex], dimensions that walls take away
   std::vector<std::uint32_t> wall_of_;  // [vertex], or none
   std::vector<Wall> walls_;
 };

@@ -12,6 +12,7 @@ namespace ductile::campaign {
 struct Settings {
   std::filesystem::path program;  ///< ductile
   double limit_s = 20;            ///< of each run
+  bool level_sets = true;         ///< cuts the mesh of some cases, too
   bool all_checks = false;        ///< closure and other numbers of threads for each case
 };
 

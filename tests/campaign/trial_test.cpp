@@ -36,8 +36,9 @@ class CampaignTrial : public testing::Test {
   Outcome try_script(const std::string& script, const Case& tried) const {
     write("program", "#!/bin/sh\n" + script);
     fs::permissions(folder_ / "program", fs::perms::owner_all);
-    return try_case(tried, 1, folder_ / "case",
-                    {.program = folder_ / "program", .limit_s = 0.5, .all_checks = true});
+    return try_case(
+        tried, 1, folder_ / "case",
+        {.program = folder_ / "program", .limit_s = 0.5, .level_sets = false, .all_checks = true});
   }
 
   /// A case for which a copy of the input is a right answer.

@@ -94,7 +94,7 @@ touch a.mesh "my part.msh" b.sol c.vtu d.stl e.png f.mmg2d g.txt parts/x.mesh
 mkdir parts/y.mesh
 for words in "adapt" "adapt -sol b.sol" "info" "metric size --near point : 0,0 : .1" "metric implied"; do
   # shellcheck disable=SC2086
-  completes $words "" -- a.mesh "my part.msh" c.vtu parts
+  completes $words "" -- a.mesh "my part.msh" c.vtu d.stl parts
 done
 completes adapt "my\\ p" -- "my part.msh"
 completes adapt '"my p' -- "my part.msh"

@@ -393,7 +393,7 @@ TEST(LocalSizes, AreReadFromMmgsFiles) {
     const char *text, *said;
   };
   for (const auto& [text, said] : std::vector<Fault>{
-           {"sizes 1", "a.mmg3d:1: expected Parameters, found 'sizes'"},
+           {"sizes 1", "a.mmg3d:1: expected Parameters or LSReferences, found 'sizes'"},
            {"parameters\nmany",
             ":2: expected the number of references, a whole number, found 'many'"},
            {"parameters -1", ":1: expected a number of references of 0 or more"},
@@ -407,7 +407,7 @@ TEST(LocalSizes, AreReadFromMmgsFiles) {
            {"parameters 1\n1 Edge 1 inf 3", ":2: expected hmax, a finite number"},
            {"parameters 1\n1 Edge 2 1 3", ":2: expected hmin not to be above hmax"},
            {"parameters 1\n1 Edge 1 2", "expected hausd, found the end of the file"},
-           {"parameters 1\n1 Edge 1 2 3 4", "expected Parameters, found '4'"}})
+           {"parameters 1\n1 Edge 1 2 3 4", "expected Parameters or LSReferences, found '4'"}})
     EXPECT_NE(test::complaint([&, text = text] { read(text); }).find(said), std::string::npos)
         << text << ": " << test::complaint([&, text = text] { read(text); });
 }
