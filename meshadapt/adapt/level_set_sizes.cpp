@@ -227,16 +227,17 @@ void expect_sizes(const PointFunction& function, const LevelSetSizesOptions& siz
 
 AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
                                 const AnyField& metric, const PointFunction& function,
-                                const LevelSetSizesOptions& sizes, const AdaptOptions& options) {
-  expect_sizes(function, sizes);
-  AnyField finer = metric_of(metric, mesh, {options.smallest_size, options.largest_size});
-  const Wanted wanted{function, sizes};
+                                const LevelSetSizesOptions& options) {
+  expect_sizes(function, options);
+  AnyField finer =
+      metric_of(metric, mesh, {options.adapt.smallest_size, options.adapt.largest_size});
+  const Wanted wanted{function, options};
   if (!wanted.refine(executor, mesh, finer)) return {mesh, finer, {}};
   LevelSetSizes source(finer, wanted);
-  AdaptedMesh adapted = adapt(executor, mesh, source, options);
+  AdaptedMesh adapted = adapt(executor, mesh, source, options.adapt);
   if (!source.is_resolved())
     adapted.report.warnings.push_back(name_of(mesh) + ": the level set is not resolved after " +
-                                      std::to_string(sizes.most_passes) +
+                                      std::to_string(options.most_passes) +
                                       " passes; allow more, or a larger tolerance");
   return adapted;
 }

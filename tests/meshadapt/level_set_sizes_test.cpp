@@ -152,7 +152,7 @@ TYPED_TEST(LevelSetSizesIn, FollowAFunctionKnownAtVerticesAtAnyNumberOfThreads) 
     const AdaptedMesh result = refine_to_level_set(
         executor, mesh, constant_metric(mesh, size_in(dim)),
         [&](std::span<const double> points) { return known.at(executor, points); },
-        {.tolerance = 0.02, .most_passes = 3}, {.gradation = 1.3});
+        {.tolerance = 0.02, .most_passes = 3, .adapt = {.gradation = 1.3}});
     EXPECT_GT(elements_in<dim>(result.mesh).size(), elements_in<dim>(mesh).size());
     if (expected.empty()) expected = test::bits(result.mesh.coordinates);
     EXPECT_EQ(test::bits(result.mesh.coordinates), expected) << threads << " threads";

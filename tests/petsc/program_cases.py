@@ -405,7 +405,7 @@ def try_mistakes(dim):
     os.remove("out.mesh")
     text = adapt("in.mesh", "-o", "out.mesh", "--hmxa", "1", status=2)
     expect("did you mean" in text and text.count("ductile-mpi: ") == 1, text)
-    expect("Mmg's" in adapt("in.mesh", "-o", "out.mesh", "-ls", "0", status=2), "-ls is not Mmg's")
+    expect("Mmg's" in adapt("in.mesh", "-o", "out.mesh", "-nsd", "0", status=2), "-nsd is not Mmg's")
     for words, status, said in (
         ([], 2, "Commands:"), (["help"], 0, "Commands:"), (["--version"], 0, "ductile-mpi "),
         (["help", "adapt"], 0, "mpirun -n N ductile-mpi adapt"), (["adpt"], 2, "did you mean 'adapt'"),

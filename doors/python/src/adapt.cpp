@@ -134,7 +134,9 @@ py::tuple refine_to_level_set(const AnyMesh& mesh, const GivenMetric& metric,
     const auto at = [&](std::span<const double> coordinates) {
       return values_at(function, coordinates, mesh.dimension);
     };
-    return meshadapt::refine_to_level_set(executor, mesh, wanted, at, sizes, options);
+    return meshadapt::refine_to_level_set(
+        executor, mesh, wanted, at,
+        {sizes.tolerance, sizes.smallest_size, sizes.most_passes, options});
   };
   return adapted_by(mesh, adapt, {}, threads, py::none());
 }

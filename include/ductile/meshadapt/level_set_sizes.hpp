@@ -24,6 +24,7 @@ struct LevelSetSizesOptions {
   double tolerance = 0;
   double smallest_size = 0;  ///< edges are not divided below this; 0: the tolerance
   int most_passes = 10;      ///< adaptations of the mesh, one after another
+  AdaptOptions adapt = {};   ///< of each
 };
 
 /// Adapts the mesh to the metric, made finer at edges where the zero is not resolved, again and
@@ -36,7 +37,6 @@ struct LevelSetSizesOptions {
 /// adapt() does; exceptions of the function leave it.
 AdaptedMesh refine_to_level_set(const runtime::Executor& executor, const AnyMesh& mesh,
                                 const AnyField& metric, const PointFunction& function,
-                                const LevelSetSizesOptions& sizes,
-                                const AdaptOptions& options = {});
+                                const LevelSetSizesOptions& options);
 
 }  // namespace ductile::meshadapt
