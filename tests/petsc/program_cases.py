@@ -406,6 +406,9 @@ def try_mistakes(dim):
     text = adapt("in.mesh", "-o", "out.mesh", "--hmxa", "1", status=2)
     expect("did you mean" in text and text.count("ductile-mpi: ") == 1, text)
     expect("Mmg's" in adapt("in.mesh", "-o", "out.mesh", "-nsd", "0", status=2), "-nsd is not Mmg's")
+    for option in ("-ls", "-lag"):
+        said = adapt("in.mesh", "-o", "out.mesh", option, "0", status=2)
+        expect(f"option {option}: expected none" in said, f"{option} is not refused")
     for words, status, said in (
         ([], 2, "Commands:"), (["help"], 0, "Commands:"), (["--version"], 0, "ductile-mpi "),
         (["help", "adapt"], 0, "mpirun -n N ductile-mpi adapt"), (["adpt"], 2, "did you mean 'adapt'"),

@@ -78,6 +78,10 @@ Input read_words(const Arguments& arguments) {
   const bool is_gathered = input.form == Form::gathered;
   input.job = cli::adapt_job(arguments, is_gathered ? std::optional<fs::path>()
                                                     : fs::path(given).replace_extension(".vtu"));
+  if (arguments.has("-lag"))
+    throw cli::UsageError(
+        "option -lag: expected none with several processes, found one; move the mesh with `ductile "
+        "move`");
   if (input.job.level_set)
     throw cli::UsageError(
         "option -ls: expected none with several processes, found one; cut the mesh with `ductile "
