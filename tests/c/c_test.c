@@ -608,8 +608,9 @@ static void test_signed_distance(void) {
 /* A disc of radius .3 in a square of n x n cells. */
 static ductile_mesh* make_cells(int n, double* phi) {
   ductile_mesh* mesh = NULL;
-  double* points = malloc(sizeof(double) * (size_t)(2 * (n + 1) * (n + 1)));
-  int32_t* corners = malloc(sizeof(int32_t) * (size_t)(6 * n * n));
+  double points[2 * 21 * 21];
+  int32_t corners[6 * 20 * 20];
+  EXPECT(n <= 20);
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) {
       const int v = i * (n + 1) + j;
@@ -623,8 +624,6 @@ static ductile_mesh* make_cells(int n, double* phi) {
   EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
   EXPECT(ductile_mesh_set_vertices(mesh, (n + 1) * (n + 1), points, NULL) == DUCTILE_OK);
   EXPECT(ductile_mesh_set_elements(mesh, 2 * n * n, corners, NULL) == DUCTILE_OK);
-  free(points);
-  free(corners);
   return mesh;
 }
 
