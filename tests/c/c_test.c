@@ -564,6 +564,7 @@ static void test_guide(void) {
 #include "guide.inc"
   EXPECT(x != NULL && ductile_mesh_count(adapted, DUCTILE_VERTICES) > 50);
   ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(mesh);
 }
 
 /** A disk of radius 1/2 in one of radius 1. */
