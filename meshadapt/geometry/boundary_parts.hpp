@@ -117,9 +117,9 @@ void find_flat_parts(BoundaryParts<Dim>& parts,
 template <int Dim>
 void find_noise(BoundaryParts<Dim>& parts, std::span<const std::array<std::uint32_t, Dim>> beside);
 
-/// Marks in `kept` the vertices of the boundary that are within a distance of a facet they do not
-/// belong to, and the corners of that facet: where the boundary lies against itself, as the two
-/// sides of a closed crack do, or bodies that touch. Takes a logarithm more than linear.
+/// Finds where the boundary lies against itself, such as at closed cracks and touching bodies.
+/// Marks in `kept` each boundary vertex that is within `distance` of a facet it is no corner of,
+/// and the corners of that facet. Takes O(n log n).
 template <int Dim>
 void find_touching(BoundaryParts<Dim>& parts, double distance);
 

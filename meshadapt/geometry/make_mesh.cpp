@@ -10,7 +10,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
-#include "geometry/marked_points.hpp"
+#include "geometry/fill_mesh.hpp"
 #include "geometry/tag_boundary.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
@@ -47,24 +47,7 @@ class MeshMaker {
 
   void fill() {
     const auto& cells = elements_in<Dim>(any_);
-    mesh_.elements_of.reset(executor_, 0);
-    mesh_.grow(executor_, any_.vertex_count(), cells.size());
-    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
-      mesh_.site_of[v].position = position_in<Dim>(any_, v);
-      mesh_.reference_of[v] = any_.vertex_reference[v];
-      mesh_.kind_of[v] = {};
-    });
-    for (const std::uint32_t v : any_.corners) mesh_.kind_of[v].corner = true;
-    for (const std::uint32_t v : any_.required_vertices) mesh_.kind_of[v].required = true;
-    const std::vector<std::uint8_t> marked_of = marked_points(any_);
-    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
-      if (marked_of[v] != 0 && !mesh_.kind_of[v].required) mesh_.kind_of[v].corner = true;
-    });
-    parallel_for(executor_, cells.size(), [&](std::size_t e) {
-      mesh_.corners_of[e] = cells.vertices[e];
-      mesh_.patches_of[e].fill(0);
-      mesh_.changed_at[e] = mesh_.epoch;
-    });
+    fill_mesh(executor_, any_, cells.vertices, mesh_);
     const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     const auto locked = marked(any_, cells.size(), required, element_name<Dim>());
     number_regions(cells.reference, locked);

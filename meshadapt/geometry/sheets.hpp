@@ -94,7 +94,7 @@ class Sheets {
   /// A point of a sheet, and how far it is from that of which it is the closest.
   struct Nearest {
     std::uint32_t sheet;
-    std::uint32_t facet;  ///< or edge, as they were given
+    std::uint32_t facet;  ///< index into the facets or edges that the sheets were made from
     double distance;
     Vector<Dim> point;
     Vector<Dim> direction;  ///< there: unit normal of a facet, outwards, or along the edge

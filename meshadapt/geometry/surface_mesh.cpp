@@ -13,7 +13,7 @@
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/curvature.hpp"
-#include "geometry/marked_points.hpp"
+#include "geometry/fill_mesh.hpp"
 #include "geometry/tag_boundary.hpp"
 #include "geometry/triangle_edges.hpp"
 #include "mesh/neighbours.hpp"
@@ -107,25 +107,8 @@ class SurfaceMeshMaker {
   // ---- The mesh ----
 
   void fill() {
-    mesh_.elements_of.reset(executor_, 0);
-    mesh_.grow(executor_, any_.vertex_count(), corners_.size());
-    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
-      mesh_.site_of[v].position = position_in<3>(any_, v);
-      mesh_.reference_of[v] = any_.vertex_reference[v];
-      mesh_.kind_of[v] = {};
-      mesh_.entity_of[v] = 0;
-    });
-    for (const std::uint32_t v : any_.corners) mesh_.kind_of[v].corner = true;
-    for (const std::uint32_t v : any_.required_vertices) mesh_.kind_of[v].required = true;
-    const std::vector<std::uint8_t> marked_of = marked_points(any_);
-    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
-      if (marked_of[v] != 0 && !mesh_.kind_of[v].required) mesh_.kind_of[v].corner = true;
-    });
-    parallel_for(executor_, corners_.size(), [&](std::size_t e) {
-      mesh_.corners_of[e] = corners_[e];
-      mesh_.patches_of[e].fill(0);
-      mesh_.changed_at[e] = mesh_.epoch;
-    });
+    fill_mesh(executor_, any_, corners_, mesh_);
+    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) { mesh_.entity_of[v] = 0; });
   }
 
   void report_unused_vertices() {
