@@ -135,7 +135,10 @@ ductile_mesh* moved_by(const ductile_mesh& mesh, const AnyField& displacement,
   report.converged = true;
   report.total_seconds = moved.report.total_seconds;
   report.warnings = std::move(moved.report.warnings);
-  return handle_of({std::move(moved.mesh), std::move(moved.metric), std::move(report)});
+  ductile_mesh* const handle =
+      handle_of({std::move(moved.mesh), std::move(moved.metric), std::move(report)});
+  handle->origins = std::move(moved.origins);
+  return handle;
 }
 
 }  // namespace
@@ -192,6 +195,23 @@ int ductile_move(const ductile_mesh* mesh, const double* displacement, int64_t c
     const ductile_options defaults;
     *moved = c::moved_by(*mesh, field, options == nullptr ? defaults : *options,
                          {bodies, bodies + count});
+  });
+}
+
+int ductile_move_origins(const ductile_mesh* moved, int32_t* vertices, int32_t* facets,
+                         int32_t* elements) {
+  return c::guarded([&] {
+    c::expect_given(moved, "moved");
+    const meshadapt::Origins& origins = moved->origins;
+    if (origins.vertex.empty())
+      throw meshadapt::InputError("moved: expected a mesh from ductile_move(), found another");
+    const auto copy = [](const std::vector<std::uint32_t>& from, int32_t* to) {
+      if (to != nullptr)
+        std::ranges::transform(from, to, [](std::uint32_t i) { return static_cast<int32_t>(i); });
+    };
+    copy(origins.vertex, vertices);
+    copy(origins.facet, facets);
+    copy(origins.element, elements);
   });
 }
 

@@ -286,6 +286,11 @@ module ductile
       integer(c_int32_t), intent(in) :: bodies(*)
       type(c_ptr), intent(out) :: moved
     end function
+    ! Each array may be c_null_ptr.
+    integer(c_int) function ductile_move_origins(moved, vertices, facets, elements) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: moved, vertices, facets, elements
+    end function
     integer(c_int) function ductile_mesh_report(adapted, name, value) bind(C)
       import :: c_int, c_char, c_double, c_ptr
       type(c_ptr), value :: adapted

@@ -265,6 +265,11 @@ int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
 int ductile_move(const ductile_mesh* mesh, const double* displacement, int64_t count,
                  const int32_t* bodies, const ductile_options* options, ductile_mesh** moved);
 
+/** For each vertex, facet and element of a moved mesh the index before of the one that it is, at
+ * another place; -1 if it is new. NULL for arrays that are not wanted. */
+int ductile_move_origins(const ductile_mesh* moved, int32_t* vertices, int32_t* facets,
+                         int32_t* elements);
+
 /** A figure of the adaptation that a mesh came from: "iterations", "converged", "seconds",
  * "fixed_vertices", "held_long_edges", "held_short_edges", "warnings". */
 int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* value);

@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/level_set.hpp"
 #include "ductile/meshadapt/sizes.hpp"
+#include "ductile/meshadapt/transfer.hpp"
 
 namespace ductile::c {
 struct Cut;  // level_set.hpp
@@ -26,6 +27,7 @@ struct ductile_mesh {
   ductile::meshadapt::AnyField metric;
   ductile::meshadapt::AdaptReport report;
   std::shared_ptr<const ductile::c::Cut> cut = nullptr;  // of a mesh from ductile_cut()
+  ductile::meshadapt::Origins origins = {};              // of a mesh from ductile_move()
 };
 
 struct ductile_options {

@@ -70,8 +70,8 @@ constexpr std::array<Option, 42> own_options{{
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
     {"-lag", "N",
-     "moves the mesh by the vectors of -sol (ductile help move); 0: without adapting it, 1, 2: "
-     "with"},
+     "moves the mesh by the vectors of -sol (ductile help move); adapts it 0: not, 1: by swaps, 2: "
+     "fully"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
     {"-geometry", "FILE",
@@ -183,6 +183,8 @@ void set_files(Job& job, const Arguments& arguments, const std::optional<fs::pat
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
   job.fields = CarriedFields(arguments, job.output);
+  if (job.fields.interpolates() && job.fields.inputs().empty())
+    throw UsageError("option --interpolate: expected --field as well");
   job.parameters = arguments.text("-f");
   job.geometry = arguments.text("-geometry");
   if (job.geometry && !arguments.has("-hausd"))

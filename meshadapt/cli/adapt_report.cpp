@@ -22,12 +22,6 @@ using meshadapt::AdaptReport;
 using meshadapt::AnyMesh;
 using meshadapt::KernelReport;
 
-MeshSummary summarise_mesh(const AnyMesh& mesh) {
-  return {mesh.name,         mesh.dimension,        mesh.vertex_count(),
-          mesh.edges.size(), mesh.triangles.size(), mesh.tetrahedra.size(),
-          std::nullopt};
-}
-
 /// False of a surface, and in the plane.
 bool has_tetrahedra(const MeshSummary& mesh) {
   return mesh.dimension == 3 && (mesh.tetrahedra > 0 || mesh.triangles == 0);
@@ -103,16 +97,6 @@ std::string held_edges(const AdaptReport& report) {
 std::string figures(const MeshSummary& mesh, bool with_histograms) {
   if (!mesh.statistics) return {};
   return with_histograms ? to_text(*mesh.statistics) : short_figures(*mesh.statistics);
-}
-
-std::string json_of(const MeshSummary& mesh) {
-  return "{\"file\": " + json_string(mesh.name) +
-         ", \"dimension\": " + std::to_string(mesh.dimension) +
-         ", \"vertices\": " + std::to_string(mesh.vertices) +
-         ", \"edges\": " + std::to_string(mesh.edges) +
-         ", \"triangles\": " + std::to_string(mesh.triangles) +
-         ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra) +
-         ", \"statistics\": " + (mesh.statistics ? to_json(*mesh.statistics) : "null") + "}";
 }
 
 std::string json_of(const KernelReport& kernel) {
@@ -203,6 +187,22 @@ std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
 
 }  // namespace
 
+MeshSummary summarise_mesh(const AnyMesh& mesh) {
+  return {mesh.name,         mesh.dimension,        mesh.vertex_count(),
+          mesh.edges.size(), mesh.triangles.size(), mesh.tetrahedra.size(),
+          std::nullopt};
+}
+
+std::string to_json(const MeshSummary& mesh) {
+  return "{\"file\": " + json_string(mesh.name) +
+         ", \"dimension\": " + std::to_string(mesh.dimension) +
+         ", \"vertices\": " + std::to_string(mesh.vertices) +
+         ", \"edges\": " + std::to_string(mesh.edges) +
+         ", \"triangles\": " + std::to_string(mesh.triangles) +
+         ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra) +
+         ", \"statistics\": " + (mesh.statistics ? to_json(*mesh.statistics) : "null") + "}";
+}
+
 AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::AnyField& metric,
                        const meshadapt::AdaptedMesh& adapted, const meshadapt::AdjacentMesh& after,
                        const SummaryOptions& options) {
@@ -246,7 +246,7 @@ std::string to_json(const AdaptSummary& summary, const std::string& cut) {
         (kernel_list.empty() ? "" : ", ") + json_string(name) + ": " + json_of(report.*kernel);
   for (const std::string& warning : report.warnings)
     warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
-  return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +
+  return "{\"before\": " + to_json(summary.before) + ",\n \"after\": " + to_json(summary.after) +
          ",\n \"cut\": " + cut + ",\n \"metric\": " + json_of(summary.in_force) +
          ", \"elements_wanted\": " + std::to_string(elements_wanted(summary.after)) +
          ", \"elements\": " + std::to_string(element_count(summary.after)) +

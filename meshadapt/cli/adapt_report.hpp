@@ -19,6 +19,10 @@ struct MeshSummary {
   std::optional<meshadapt::MeshStatistics> statistics;
 };
 
+/// The counts of a mesh; statistics are left out.
+MeshSummary summarise_mesh(const meshadapt::AnyMesh& mesh);
+std::string to_json(const MeshSummary& mesh);
+
 /// An option with a number: "hmin", 0.1.
 struct ValueInForce {
   std::string option;

@@ -27,8 +27,6 @@ std::string other_name(std::string name, const std::string& file,
 CarriedFields::CarriedFields(const Arguments& arguments, const fs::path& output)
     : interpolate_(arguments.has("--interpolate")) {
   for (const std::string& name : arguments.texts("--field")) inputs_.emplace_back(name);
-  if (interpolate_ && inputs_.empty())
-    throw UsageError("option --interpolate: expected --field as well");
   if (holds_fields(output)) return;  // which they then go into
   const std::string ending = field_beside(output).extension().string();
   for (const fs::path& input : inputs_) {

@@ -1,16 +1,22 @@
 #include "move_command.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "adapt_report.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "ductile/runtime/process.hpp"
 #include "files.hpp"
+#include "report.hpp"
 #include "run_in_team.hpp"
 #include "size_options.hpp"
 
@@ -24,21 +30,24 @@ using meshadapt::AnyMesh;
 using meshadapt::NamedField;
 using runtime::Executor;
 
-constexpr std::array<Option, 16> options{{
+constexpr std::array<Option, 18> options{{
     {"-o", "OUT", "where the moved mesh goes (default: NAME.o.mesh, or as the input is)", "--out"},
     {"--bodies", "REF,...", "moves the elements with these references, as DISPLACEMENT says"},
     {"--boundaries", "REF,...", "moves the edges (3D: triangles) with these references, likewise"},
-    {"-met", "METRIC", "the metric to adapt to; it goes along (default: the sizes of MESH)"},
+    {"-met", "METRIC",
+     "the metric to adapt to; it goes along (default: that in MESH, or else the sizes of MESH)"},
     {"-hsiz", "X", "adapts to edges of length X everywhere"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
     {"--remesh-below", "Q", "adapts where quality falls below Q (default: 0.35, 3D: 0.2)"},
     {"--keep-partial", "", "if the way is blocked, writes the mesh of the place that was reached"},
-    {"--field", "FIELD", "carries fields to OUT.FIELD.sol, integrals kept; may be given again"},
+    {"--field", "FIELD", "carries fields of a file, too, to OUT.FIELD.sol; may be given again"},
     {"--interpolate", "", "carries fields by their values, whatever becomes of integrals"},
+    {"--turn", "NAME", "turns this field of vectors or tensors with the mesh; may be given again"},
     {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
     {"--no-metric", "", "writes no metric beside the moved mesh"},
+    {"--json", "FILE", "writes counts, times and quality there, a .json, or - for output"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
     {"-v", "N", "0 says nothing, 1 (default) sums up", "--verbose"},
 }};
@@ -56,7 +65,7 @@ std::vector<std::int32_t> references(const Arguments& arguments, const char* opt
   return list;
 }
 
-/// What both commands have.
+/// Sets the options that `move` and `adapt -lag` share.
 void set_common(MoveJob& job, const Arguments& arguments) {
   const auto out = arguments.text("-o");
   if (!out && job.input == "/dev/stdin")
@@ -66,6 +75,9 @@ void set_common(MoveJob& job, const Arguments& arguments) {
   job.fields = CarriedFields(arguments, job.output);
   if (!arguments.has("--no-metric") && !holds_fields(job.output) && !is_standard_output(job.output))
     job.metric_out = field_beside(job.output);
+  job.json = json_output(arguments);
+  if (job.json == standard_output && is_standard_output(job.output))
+    throw UsageError("option --json: expected a file, because the mesh goes to standard output");
   job.size = size_option(arguments, "-hsiz");
   job.move.smallest_size = size_option(arguments, "-hmin").value_or(0);
   job.move.largest_size = size_option(arguments, "-hmax").value_or(0);
@@ -89,6 +101,7 @@ MoveJob move_job(const Arguments& arguments) {
     throw UsageError("options -met and -hsiz: expected one of them, found both");
   job.move.bodies = references(arguments, "--bodies");
   job.move.boundaries = references(arguments, "--boundaries");
+  job.move.turned = arguments.texts("--turn");
   job.move.remesh_below = arguments.positive("--remesh-below").value_or(0);
   job.move.keep_partial = arguments.has("--keep-partial");
   return job;
@@ -97,6 +110,7 @@ MoveJob move_job(const Arguments& arguments) {
 std::vector<fs::path> outputs_of(const MoveJob& job) {
   std::vector<fs::path> paths{place_of(job.output)};
   if (job.metric_out) paths.push_back(*job.metric_out);
+  if (job.json && *job.json != standard_output) paths.push_back(*job.json);
   paths.insert(paths.end(), job.fields.outputs().begin(), job.fields.outputs().end());
   return paths;
 }
@@ -120,12 +134,39 @@ AnyField displacement_of(const MoveJob& job, const meshadapt::MeshWithFields& fi
   return field;
 }
 
-AnyField metric_of(const MoveJob& job, const AnyMesh& mesh, meshadapt::Warnings& warnings) {
-  if (job.size) return meshadapt::constant_metric(mesh, *job.size);
-  if (job.metric_in)
-    return read_metric(*job.metric_in, mesh, warnings,
-                       {job.move.smallest_size, job.move.largest_size});
-  return meshadapt::implied_metric(mesh);
+AnyField metric_of(const MoveJob& job, const meshadapt::MeshWithFields& file,
+                   meshadapt::Warnings& warnings) {
+  const meshadapt::SizeBounds bounds{job.move.smallest_size, job.move.largest_size};
+  if (job.size) return meshadapt::constant_metric(file.mesh, *job.size);
+  if (job.metric_in) return read_metric(*job.metric_in, file.mesh, warnings, bounds);
+  if (const auto own = metric_in(file)) return meshadapt::metric_of(*own, file.mesh, bounds);
+  return meshadapt::implied_metric(file.mesh);
+}
+
+/// The fields that go along: `given` ones, and those of the mesh's own file if the output can hold
+/// them, without the displacement and the metric. Otherwise a warning names these.
+std::vector<NamedField> fields_along(const MoveJob& job, const meshadapt::MeshWithFields& file,
+                                     std::vector<NamedField> given, meshadapt::Warnings& warnings) {
+  std::vector<NamedField> own;
+  for (const NamedField& field : file.fields)
+    if (field.name != "metric" && field.name != job.displacement &&
+        std::ranges::find(given, field.name, &NamedField::name) == given.end())
+      own.push_back(field);
+  if (!own.empty() && !holds_fields(job.output))
+    warnings.push_back(file.mesh.name + ": its fields are not carried: " + names_of(own) +
+                       "; a .vtu, .vtk or .msh as output would hold them");
+  else
+    given.insert(given.end(), own.begin(), own.end());
+  return given;
+}
+
+/// Marks on elements go by value, and so do fields without an integral; all others keep it.
+meshadapt::Carrying carrying(const MoveJob& job, const NamedField& field) {
+  const bool is_finite =
+      std::ranges::all_of(field.values, [](double x) { return std::isfinite(x); });
+  return job.fields.interpolates() || !is_finite || (field.whole && !is_at_vertices(field))
+             ? meshadapt::Carrying::by_value
+             : meshadapt::Carrying::conservatively;
 }
 
 std::string summary(const MoveJob& job, const meshadapt::MovedMesh& moved) {
@@ -146,10 +187,38 @@ std::string summary(const MoveJob& job, const meshadapt::MovedMesh& moved) {
   return text + meshadapt::printable(written) + "\n";
 }
 
-/// Writes all outputs, which appear on commit().
-void stage(meshadapt::AtomicOutputs& outputs, const MoveJob& job, meshadapt::MovedMesh& moved,
-           const CarriedFields::Values& fields, meshadapt::Warnings& warnings) {
-  moved.mesh.name = job.output.string();
+/// The meshes and metrics before and after.
+struct Run {
+  const AnyMesh& before;
+  const AnyField& metric;
+  const meshadapt::MovedMesh& moved;
+};
+
+std::string to_json(const Executor& executor, const Run& run, const meshadapt::Warnings& warnings) {
+  MeshSummary before = summarise_mesh(run.before), after = summarise_mesh(run.moved.mesh);
+  before.statistics = meshadapt::measure(executor, run.before, &run.metric);
+  after.statistics = meshadapt::measure(executor, run.moved.mesh, &run.moved.metric);
+  const meshadapt::MoveReport& report = run.moved.report;
+  std::string list;
+  for (const std::string& warning : warnings)
+    list += (list.empty() ? "" : ", ") + json_string(warning);
+  return "{\"before\": " + to_json(before) + ",\n \"after\": " + to_json(after) +
+         ",\n \"share\": " + json_number(report.share) +
+         ", \"stopped\": " + (report.stopped.empty() ? "null" : json_string(report.stopped)) +
+         ", \"steps\": " + std::to_string(report.steps) +
+         ", \"adaptations\": " + std::to_string(report.adaptations) +
+         ", \"adapted_elements\": " + std::to_string(report.adapted_elements) +
+         ", \"worst_quality\": " + json_number(report.worst_quality) +
+         ",\n \"threads\": " + std::to_string(executor.threads()) +
+         ", \"seconds\": {\"total\": " + json_number(report.total_seconds) +
+         ", \"adapting\": " + json_number(report.adapt_seconds) +
+         "},\n \"peak_memory_bytes\": " + std::to_string(runtime::peak_memory()) +
+         ",\n \"warnings\": [" + list + "]}\n";
+}
+
+/// Writes the outputs, which appear on commit(), except the JSON.
+void stage(meshadapt::AtomicOutputs& outputs, const MoveJob& job, const meshadapt::MovedMesh& moved,
+           const std::vector<std::size_t>& field_count_of, meshadapt::Warnings& warnings) {
   std::vector<NamedField> all = meshadapt::named_fields(moved.metric, "metric");
   all.insert(all.end(), moved.fields.begin(), moved.fields.end());
   meshadapt::WriteOptions as_named;
@@ -159,30 +228,35 @@ void stage(meshadapt::AtomicOutputs& outputs, const MoveJob& job, meshadapt::Mov
   as_named.warnings = &warnings;
   meshadapt::write_mesh(outputs, place_of(job.output), moved.mesh, as_named);
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, moved.metric);
-  job.fields.write(outputs, moved.mesh, moved.fields, fields.count_of);
+  job.fields.write(outputs, moved.mesh, moved.fields, field_count_of);
 }
 
 int work(const Executor& executor, MoveJob job) {
   meshadapt::Warnings warnings;
   const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
-  const CarriedFields::Values fields = job.fields.read(file.mesh, warnings);
+  const CarriedFields::Values given = job.fields.read(file.mesh, warnings);
+  const std::vector<NamedField> fields = fields_along(job, file, given.fields, warnings);
   const AnyField displacement = displacement_of(job, file, warnings);
-  const AnyField metric = metric_of(job, file.mesh, warnings);
+  const AnyField metric = metric_of(job, file, warnings);
   job.move.metric = &metric;
-  job.move.fields = fields.fields;
-  job.move.carrying = {job.fields.interpolates() ? meshadapt::Carrying::by_value
-                                                 : meshadapt::Carrying::conservatively};
+  job.move.fields = fields;
+  job.move.carrying.clear();
+  for (const NamedField& field : fields) job.move.carrying.push_back(carrying(job, field));
   meshadapt::MovedMesh moved = meshadapt::move(executor, file.mesh, displacement, job.move);
+  moved.mesh.name = job.output.string();
   warnings.insert(warnings.end(), moved.report.warnings.begin(), moved.report.warnings.end());
   if (!moved.report.stopped.empty())
     warnings.push_back("the way was not gone to its end, " + moved.report.stopped);
   const std::string said = job.verbosity > 0 ? summary(job, moved) : std::string();
   meshadapt::AtomicOutputs outputs;
-  stage(outputs, job, moved, fields, warnings);
+  stage(outputs, job, moved, given.count_of, warnings);
+  if (job.json)
+    put_json(outputs, *job.json, to_json(executor, {file.mesh, metric, moved}, warnings));
   print_warnings(warnings, job.verbosity);
   outputs.commit();
   // From here on no memory is taken, because the outputs are there.
-  std::fputs(said.c_str(), is_standard_output(job.output) ? stderr : stdout);
+  const bool taken = is_standard_output(job.output) || job.json == standard_output;
+  std::fputs(said.c_str(), taken ? stderr : stdout);
   return moved.report.stopped.empty() ? done : failed;
 }
 
@@ -198,10 +272,10 @@ int run(const Arguments& arguments) { return run_job(move_job(arguments)); }
 
 int run_lag(const Arguments& arguments) {
   for (const char* option :
-       {"--solution", "--elements",   "--recovery", "--near",       "--on",     "--inside",
-        "-f",         "-nomove",      "-noswap",    "-noinsert",    "-hausd",   "-geometry",
-        "-A",         "--iterations", "--thorough", "--by-colours", "--racing", "--json",
-        "--vtu",      "--join",       "-ls",        "-rmc",         "-isoref",  "--keep-volume"})
+       {"--solution", "--elements",   "--recovery", "--near",       "--on",         "--inside",
+        "-f",         "-nomove",      "-noswap",    "-noinsert",    "-hausd",       "-geometry",
+        "-A",         "--iterations", "--thorough", "--by-colours", "--racing",     "--vtu",
+        "--join",     "-ls",          "-rmc",       "-isoref",      "--keep-volume"})
     if (arguments.has(option))
       throw UsageError(std::string("options -lag and ") + option +
                        ": expected one of them, found both");
@@ -214,7 +288,9 @@ int run_lag(const Arguments& arguments) {
   const auto displacement = arguments.text("-sol");
   job.displacement = displacement ? *displacement : field_beside(job.input).string();
   set_common(job, arguments);
-  job.move.remeshes = arguments.integer("-lag", 0, 2) != 0;
+  const auto lag = arguments.integer("-lag", 0, 2);
+  job.move.remeshes = lag != 0;
+  job.move.insert = lag == 2;
   return run_job(job);
 }
 
@@ -227,8 +303,9 @@ const Command move_command{
     "rigidly turn on their way, others go straight; the mesh around them follows. Without "
     "--bodies\n"
     "and --boundaries all vertices move whose displacement is not zero, and regions with such\n"
-    "vertices inside. Where the way is blocked nothing is written, see --keep-partial. The metric\n"
-    "at the vertices is written beside the moved mesh: give it to the next call with -met.",
+    "vertices inside. Where the way is blocked nothing is written, see --keep-partial. All fields\n"
+    "of MESH go along if OUT can hold them: with their integrals, marks on elements by value. The\n"
+    "metric at the vertices is written beside the moved mesh: give it to the next call with -met.",
     options,
     run};
 

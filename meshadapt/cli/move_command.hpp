@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "arguments.hpp"
 #include "carried_fields.hpp"
@@ -15,7 +16,7 @@ namespace ductile::cli {
 struct MoveJob {
   std::filesystem::path input, output;
   std::string displacement;  // a file, or a field of the mesh's file
-  std::optional<std::filesystem::path> metric_in, metric_out;
+  std::optional<std::filesystem::path> metric_in, metric_out, json;
   std::optional<double> size;
   CarriedFields fields;
   meshadapt::MoveOptions move;  // without the metric and fields

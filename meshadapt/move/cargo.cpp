@@ -21,6 +21,25 @@ const std::vector<double>& weights(const FixedMesh<Dim>& mesh, Place place) {
   return place == Place::vertices ? mesh.share_of : mesh.volume_of;
 }
 
+/// Turns the components of a vector or a tensor.
+template <int Dim>
+void turn_components(double* values, AnyField::Type type, const Rotation<Dim>& rotation) {
+  const auto turn_each = [&](std::size_t first, std::size_t stride) {
+    Vector<Dim> vector;
+    for (std::size_t i = 0; i < Dim; ++i) vector.x[i] = values[first + i * stride];
+    vector = rotation.turned(vector);
+    for (std::size_t i = 0; i < Dim; ++i) values[first + i * stride] = vector.x[i];
+  };
+  if (type == AnyField::Type::vector) turn_each(0, 1);
+  for (std::size_t i = 0; type == AnyField::Type::matrix && i < Dim; ++i) turn_each(i * Dim, 1);
+  for (std::size_t i = 0; type == AnyField::Type::matrix && i < Dim; ++i) turn_each(i, Dim);
+  if (type != AnyField::Type::symmetric) return;
+  Metric<Dim> tensor;
+  std::copy_n(values, tensor.m.size(), tensor.m.begin());
+  tensor = rotation.turned(tensor);
+  std::copy_n(tensor.m.begin(), tensor.m.size(), values);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -48,6 +67,20 @@ Cargo<Dim>::Cargo(const runtime::Executor& executor, const AnyMesh& mesh,
       throw InputError(
           name + "expected finite values because its integral is kept, found one that is not");
   }
+  is_turned_.resize(fields_.size(), 0);
+  for (const std::string& name : options.turned) {
+    const auto at = std::ranges::find(fields_, name, &NamedField::name);
+    if (at == fields_.end() || at->type == AnyField::Type::scalar)
+      throw InputError(
+          "turned: expected names of fields of vectors or tensors that go along, found '" + name +
+          "'");
+    is_turned_[static_cast<std::size_t>(at - fields_.begin())] = 1;
+  }
+}
+
+template <int Dim>
+bool Cargo<Dim>::has_turned() const {
+  return std::ranges::find(is_turned_, 1) != is_turned_.end();
 }
 
 template <int Dim>
@@ -58,6 +91,17 @@ bool Cargo<Dim>::keeps_content(std::size_t field) const {
 template <int Dim>
 std::size_t Cargo<Dim>::components(std::size_t field) const {
   return static_cast<std::size_t>(component_count(fields_[field].type, Dim));
+}
+
+template <int Dim>
+void Cargo<Dim>::turn(Place place, const std::vector<Rotation<Dim>>& rotation_of) {
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    if (!is_turned_[f] || fields_[f].place != place) continue;
+    const std::size_t n = components(f);
+    runtime::parallel_for(executor_, rotation_of.size(), [&](std::size_t i) {
+      turn_components(&fields_[f].values[i * n], fields_[f].type, rotation_of[i]);
+    });
+  }
 }
 
 template <int Dim>
@@ -76,7 +120,7 @@ void Cargo<Dim>::follow(const FixedMesh<Dim>& before, const FixedMesh<Dim>& afte
 
 template <int Dim>
 void Cargo<Dim>::replace(const FixedMesh<Dim>& before, const Part<Dim>& part,
-                         const AdaptedMesh& adapted, const Renewals& renewals) {
+                         const AnyMesh& adapted, const Renewals& renewals) {
   if (fields_.empty()) return;
   content_.assign(fields_.size(), {});
   for (std::size_t f = 0; f < fields_.size(); ++f)
@@ -91,7 +135,7 @@ void Cargo<Dim>::replace(const FixedMesh<Dim>& before, const Part<Dim>& part,
       old[f].values.insert(old[f].values.end(), &fields_[f].values[i * n],
                            &fields_[f].values[i * n] + n);
   }
-  const auto carried = transfer_fields(executor_, {part.mesh(), old}, adapted.mesh, carrying_);
+  const auto carried = transfer_fields(executor_, {part.mesh(), old}, adapted, carrying_);
   for (std::size_t f = 0; f < fields_.size(); ++f) {
     const std::size_t n = components(f);
     const Renewal& renewal =

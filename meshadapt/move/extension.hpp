@@ -1,6 +1,6 @@
 /// @file
 /// Extension<Dim>: displacements of free vertices from those of others: a harmonic problem in which
-/// small elements are stiff, solved by conjugate gradients.
+/// small elements are stiff, solved by preconditioned conjugate gradients.
 #pragma once
 
 #include <cstdint>
@@ -17,42 +17,37 @@ namespace ductile::meshadapt {
 template <int Dim>
 class Extension {
  public:
-  using Field = std::vector<Vector<Dim>>;
+  using Field = std::vector<Vector<Dim>>;  // [vertex]
 
-  /// Of the mesh as it lies at these positions. `walls` is referred to.
+  /// The problem on the mesh with its vertices at these positions. `walls` is referred to.
   Extension(const runtime::Executor& executor, const FixedMesh<Dim>& mesh, const Field& position_of,
             const std::vector<std::uint8_t>& is_free, const Walls<Dim>& walls);
 
-  /// Changes the displacements [vertex] of free vertices, which are a first guess.
+  /// Changes the displacements of free vertices, which are a first guess.
   void solve(Field& displacement_of) const;
 
  private:
   struct Entry {
-    std::uint32_t place;  // a free vertex by its place among them, or a vertex given
-    double weight;
-  };
-  /// Of conjugate gradients, [place].
-  struct Iterate {
-    Field value, rest, direction, product;
+    VertexId vertex;
+    double weight;  // negative
   };
 
   void add_row(const FixedMesh<Dim>& mesh, const Field& position_of, VertexId v,
                std::vector<Entry>& row) const;
-  /// What displacements of others ask for, [place].
-  Field demands(const Field& displacement_of) const;
-  /// Row i of the matrix times x, without what walls take.
+  void factorise();
+  /// Row i of the matrix times x.
   Vector<Dim> product(std::size_t i, const Field& x) const;
-  /// The sum of a[i] . b[i] / diagonal[i].
-  double weighted(const Field& a, const Field& b) const;
-  /// Returns the new size of the rest.
-  double iterate(Iterate& now, double size) const;
+  void precondition(const Field& rest, Field& result) const;
+  /// Calls term(i, free_[i]) for all rows i and sums the results in a fixed order.
+  double sum(auto&& term) const;
 
   const runtime::Executor& executor_;
   const Walls<Dim>& walls_;
-  std::vector<VertexId> free_;                            // [place]
-  std::vector<std::size_t> first_, first_given_;          // [place], and the end
-  runtime::UnsetVector<Entry> free_entry_, given_entry_;  // negative weights, by row
-  std::vector<double> diagonal_, inverse_;                // [place]
+  std::vector<VertexId> free_;         // [row]
+  std::vector<std::size_t> first_;     // [row], and the end
+  runtime::UnsetVector<Entry> entry_;  // off the diagonal; ascending in each row
+  std::vector<double> diagonal_;       // [row]
+  std::vector<double> pivot_of_;       // [vertex], inverse; 0 if it is not free
 };
 
 extern template class Extension<2>;

@@ -21,6 +21,21 @@ void expect_options(const MoveOptions& options) {
                      std::to_string(options.most_steps));
 }
 
+/// Compares the moved mesh with the input where its vertices were there.
+template <int Dim>
+MovedMesh moved(const runtime::Executor& executor, const AnyMesh& mesh,
+                const AnyField& displacement, const MoveOptions& options) {
+  AnyMesh listed = mesh;
+  list_boundary(executor, listed);
+  Mover<Dim> mover(executor, std::move(listed), displacement, options);
+  MovedMesh result = mover.run();
+  std::vector<double> coordinates = mover.starts();
+  result.mesh.coordinates.swap(coordinates);
+  result.origins = origins(executor, mesh, result.mesh);
+  result.mesh.coordinates.swap(coordinates);
+  return result;
+}
+
 }  // namespace
 
 MovedMesh move(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& displacement,
@@ -28,20 +43,17 @@ MovedMesh move(const runtime::Executor& executor, const AnyMesh& mesh, const Any
   const auto start = std::chrono::steady_clock::now();
   expect_options(options);
   expect_coordinates(mesh);
-  MovedMesh moved;
+  MovedMesh result;
   runtime::with_team(executor, [&] {
     auto warnings =
         expect_adaptable(executor, mesh, {.complete_boundary = options.complete_boundary});
-    AnyMesh listed = mesh;
-    list_boundary(executor, listed);
-    moved = mesh.dimension == 2
-                ? Mover<2>(executor, std::move(listed), displacement, options).run()
-                : Mover<3>(executor, std::move(listed), displacement, options).run();
-    moved.report.warnings.insert(moved.report.warnings.begin(), warnings.begin(), warnings.end());
+    result = mesh.dimension == 2 ? moved<2>(executor, mesh, displacement, options)
+                                 : moved<3>(executor, mesh, displacement, options);
+    result.report.warnings.insert(result.report.warnings.begin(), warnings.begin(), warnings.end());
   });
-  moved.report.total_seconds =
+  result.report.total_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return moved;
+  return result;
 }
 
 }  // namespace ductile::meshadapt

@@ -52,6 +52,8 @@ MovingMesh<Dim> moving_mesh(const Executor& executor, const FixedMesh<Dim>& topo
   parallel_for(executor, result.site_of.size(), [&](std::size_t v) {
     result.site_of[v] = make_site(topology.position_of[v], tensors[v]);
   });
+  result.start_of = topology.position_of;
+  result.speed_of.resize(mesh.vertex_count());
   elements_in<Dim>(mesh).vertices = topology.corners_of;  // all turned the same way
   result.is_held.assign(topology.element_count(), 0);
   for (const std::uint32_t e : Dim == 2 ? mesh.required_triangles : mesh.required_tetrahedra)
@@ -76,19 +78,24 @@ std::vector<Vector<Dim>> displacements(const Executor& executor, const AnyMesh& 
   return vectors;
 }
 
+/// Adapts a part as move() is asked to.
 template <int Dim>
-double worst_quality(const AdaptedMesh& adapted) {
-  double worst = 1;
-  for (const auto& corners : elements_in<Dim>(adapted.mesh).vertices) {
-    std::array<Site<Dim>, Dim + 1> sites;
-    std::array<const Site<Dim>*, Dim + 1> corner;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      sites[i] = site_in<Dim>(adapted, corners[i]);
-      corner[i] = &sites[i];
-    }
-    worst = std::min(worst, quality<Dim>(corner));
-  }
-  return worst;
+AdaptedPart<Dim> adapted_part(const Executor& executor, const Part<Dim>& part,
+                              const MoveOptions& options, MoveReport& report) {
+  AdaptedMesh adapted = adapt(executor, part.mesh(), part.metric(),
+                              {.smallest_size = options.smallest_size,
+                               .largest_size = options.largest_size,
+                               .gradation = options.gradation,
+                               .required_gradation = Steering::required_gradation,
+                               .insert = options.insert});
+  ++report.adaptations;
+  report.adapted_elements += part.elements().size();
+  report.adapt_seconds += adapted.report.total_seconds;
+  const std::vector<Metric<Dim>> metric_of = tensors_of<Dim>(executor, adapted.metric);
+  AdaptedPart<Dim> result{std::move(adapted.mesh), {}, {}};
+  for (std::size_t v = 0; v < metric_of.size(); ++v)
+    result.site_of.push_back(make_site(position_in<Dim>(result.mesh, v), metric_of[v]));
+  return result;
 }
 
 double chosen(double given, double in_2d, double in_3d, int dimension) {
@@ -109,11 +116,9 @@ Mover<Dim>::Mover(const Executor& executor, AnyMesh mesh, const AnyField& displa
       cargo_(executor, mesh, options) {
   mesh_ = moving_mesh(executor, topology_, std::move(mesh), options);
   mesh_.path_of = paths_.path_of();
-  mesh_.body_of = paths_.body_of();
-  mesh_.speed_of.resize(mesh_.site_of.size());
+  mesh_.is_rigid = paths_.rigid_elements(topology_);
   stride_ = paths_.first_stride();
-  for (std::size_t e = 0; e < mesh_.is_held.size(); ++e)
-    if (mesh_.body_of[e] != 0 && paths_.is_rigid(mesh_.body_of[e])) mesh_.is_held[e] = 1;
+  for (std::size_t e = 0; e < mesh_.is_held.size(); ++e) mesh_.is_held[e] |= mesh_.is_rigid[e];
   mesh_.made_with.assign(mesh_.is_held.size(), -1);
   connect();
   mesh_.came_with = mesh_.quality_of;
@@ -133,7 +138,7 @@ void Mover<Dim>::connect() {
   topology_ = topology_now();
   mesh_.quality_of.resize(topology_.element_count());
   parallel_for(executor_, mesh_.quality_of.size(), [&](std::size_t e) {
-    mesh_.quality_of[e] = mesh_.quality(topology_.corners_of[e]);
+    mesh_.quality_of[e] = quality_at(mesh_.site_of, topology_.corners_of[e]);
     if (mesh_.made_with[e] < 0) mesh_.made_with[e] = mesh_.quality_of[e];
   });
 }
@@ -211,17 +216,17 @@ bool Mover<Dim>::step(Marks& blocking) {
 }
 
 template <int Dim>
-Vector<Dim> Mover<Dim>::position_at(double share, const Field& move_of, std::size_t vertex) const {
-  const std::uint32_t path = mesh_.path_of[vertex];
-  return path != none ? paths_.at(path, share) : mesh_.site_of[vertex].position + move_of[vertex];
-}
-
-template <int Dim>
 std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& blocking) {
-  MovingMesh<Dim> moved;
-  moved.site_of = mesh_.site_of;
-  parallel_for(executor_, moved.site_of.size(),
-               [&](std::size_t v) { moved.site_of[v].position = position_at(share, move_of, v); });
+  next_site_of_ = mesh_.site_of;
+  parallel_for(executor_, next_site_of_.size(), [&](std::size_t v) {
+    const std::uint32_t path = mesh_.path_of[v];
+    next_site_of_[v].position =
+        path != none ? paths_.at(path, share) : mesh_.site_of[v].position + move_of[v];
+  });
+  parallel_for(executor_, next_site_of_.size(), [&](std::size_t v) {
+    Metric<Dim>& metric = next_site_of_[v].metric;
+    if (!is_isotropic(metric)) metric = rotation_at(static_cast<VertexId>(v), share).turned(metric);
+  });
   next_quality_of_ = mesh_.quality_of;
   return runtime::parallel_reduce(
       executor_, blocking.size(), std::size_t{0},
@@ -229,10 +234,10 @@ std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& block
         const auto& corners = topology_.corners_of[e];
         if (std::ranges::all_of(corners, [&](VertexId v) { return move_of[v] == Vector<Dim>{}; }))
           return std::size_t{0};
-        const double quality = next_quality_of_[e] = moved.quality(corners);
-        const bool is_rigid = mesh_.body_of[e] != 0 && paths_.is_rigid(mesh_.body_of[e]);
+        const double quality = next_quality_of_[e] = quality_at(next_site_of_, corners);
         const double least =
-            is_rigid ? 0 : std::min(keep_above_, Steering::kept_quality * mesh_.made_with[e]);
+            mesh_.is_rigid[e] ? 0
+                              : std::min(keep_above_, Steering::kept_quality * mesh_.made_with[e]);
         blocking[e] = !(quality > least);
         return std::size_t{blocking[e]};
       },
@@ -240,11 +245,39 @@ std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& block
 }
 
 template <int Dim>
-void Mover<Dim>::go_to(double share, const Field& move_of) {
-  parallel_for(executor_, mesh_.site_of.size(), [&](std::size_t v) {
-    mesh_.site_of[v].position = position_at(share, move_of, v);
-    mesh_.speed_of[v] = 1 / (share - share_) * move_of[v];
+Rotation<Dim> Mover<Dim>::rotation_of(std::span<const ElementId> elements) const {
+  return mean_rotation(
+      topology_, elements, [&](VertexId v) { return mesh_.site_of[v].position; },
+      [&](VertexId v) { return next_site_of_[v].position; });
+}
+
+/// The rotation of the rigid body that a vertex belongs to, or else of the elements around it.
+template <int Dim>
+Rotation<Dim> Mover<Dim>::rotation_at(VertexId v, double share) const {
+  const std::uint32_t path = mesh_.path_of[v];
+  const auto of_body = path == none ? std::nullopt : paths_.rotation(path, share_, share);
+  return of_body ? *of_body : rotation_of(topology_.elements_of(v));
+}
+
+template <int Dim>
+void Mover<Dim>::turn_fields(double share) {
+  std::vector<Rotation<Dim>> at_vertex(mesh_.site_of.size()), of_element(mesh_.is_held.size());
+  parallel_for(executor_, at_vertex.size(),
+               [&](std::size_t v) { at_vertex[v] = rotation_at(static_cast<VertexId>(v), share); });
+  parallel_for(executor_, of_element.size(), [&](std::size_t e) {
+    const auto element = static_cast<ElementId>(e);
+    of_element[e] = rotation_of({&element, 1});
   });
+  cargo_.turn(NamedField::Place::vertices, at_vertex);
+  cargo_.turn(NamedField::Place::elements, of_element);
+}
+
+template <int Dim>
+void Mover<Dim>::go_to(double share, const Field& move_of) {
+  if (cargo_.has_turned()) turn_fields(share);
+  parallel_for(executor_, mesh_.site_of.size(),
+               [&](std::size_t v) { mesh_.speed_of[v] = 1 / (share - share_) * move_of[v]; });
+  mesh_.site_of = next_site_of_;
   mesh_.quality_of = next_quality_of_;
   share_ = share;
   ++report_.steps;
@@ -281,28 +314,20 @@ void Mover<Dim>::grow(Marks& marks, int layers) const {
 template <int Dim>
 bool Mover<Dim>::adapt_part(Marks marks, int layers, double least_gain) {
   grow(marks, layers);
-  const auto count = static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
-  if (count == 0 || !options_.remeshes) return false;
+  if (!options_.remeshes || std::ranges::count(marks, 1) == 0) return false;
   FixedMesh<Dim> now = topology_now();
   cargo_.follow(topology_, now);
   topology_ = std::move(now);
   const Part<Dim> part(mesh_, topology_, marks);
-  const AdaptedMesh adapted =
-      meshadapt::adapt(executor_, part.mesh(), part.metric(),
-                       {.smallest_size = options_.smallest_size,
-                        .largest_size = options_.largest_size,
-                        .gradation = options_.gradation,
-                        .required_gradation = Steering::required_gradation});
-  ++report_.adaptations;
-  report_.adapted_elements += count;
-  report_.adapt_seconds += adapted.report.total_seconds;
-  double worst = 1;
-  for (std::size_t e = 0; e < marks.size(); ++e)
-    if (marks[e]) worst = std::min(worst, mesh_.quality_of[e]);
-  if (!(worst_quality<Dim>(adapted) > least_gain * worst)) return false;
-  const Origins origin = origins(executor_, part.mesh(), adapted.mesh);
-  const Renewals renewals = part.put_back(mesh_, adapted, origin.vertex);
-  cargo_.replace(topology_, part, adapted, renewals);
+  AdaptedPart<Dim> adapted = adapted_part(executor_, part, options_, report_);
+  double worst = 1, worst_now = 1;
+  for (const ElementId e : part.elements()) worst = std::min(worst, mesh_.quality_of[e]);
+  for (const auto& corners : elements_in<Dim>(adapted.mesh).vertices)
+    worst_now = std::min(worst_now, quality_at(adapted.site_of, corners));
+  if (!(worst_now > least_gain * worst)) return false;
+  adapted.origins = origins(executor_, part.mesh(), adapted.mesh);
+  const Renewals renewals = part.put_back(mesh_, adapted);
+  cargo_.replace(topology_, part, adapted.mesh, renewals);
   connect();
   cargo_.settle(topology_);
   return true;
@@ -336,6 +361,14 @@ MovedMesh Mover<Dim>::finish() {
   report_.worst_quality = *std::min_element(mesh_.quality_of.begin(), mesh_.quality_of.end());
   result.report = std::move(report_);
   return result;
+}
+
+template <int Dim>
+std::vector<double> Mover<Dim>::starts() const {
+  std::vector<double> coordinates;
+  for (const Vector<Dim>& start : mesh_.start_of)
+    coordinates.insert(coordinates.end(), start.x.begin(), start.x.end());
+  return coordinates;
 }
 
 template class Mover<2>;

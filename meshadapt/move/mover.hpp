@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ class Mover {
   Mover(const runtime::Executor& executor, AnyMesh mesh, const AnyField& displacement,
         const MoveOptions& options);
   MovedMesh run();
+  /// The places of the input that the vertices of the moved mesh were at, as AnyMesh::coordinates.
+  std::vector<double> starts() const;
 
  private:
   using Marks = std::vector<std::uint8_t>;  // [element]
@@ -38,7 +41,9 @@ class Mover {
   /// number.
   std::size_t attempt(double share, const Field& move_of, Marks& blocking);
   void go_to(double share, const Field& move_of);
-  Vector<Dim> position_at(double share, const Field& move_of, std::size_t vertex) const;
+  Rotation<Dim> rotation_at(VertexId v, double share) const;
+  Rotation<Dim> rotation_of(std::span<const ElementId> elements) const;
+  void turn_fields(double share);
 
   void mark_bad(Marks& marks) const;
   /// Adds so many layers of elements around marked ones, and takes out what may not change.
@@ -56,7 +61,8 @@ class Mover {
   FixedMesh<Dim> topology_;  // with positions and volumes as of the last connect()
   Paths<Dim> paths_;
   Cargo<Dim> cargo_;
-  std::vector<double> next_quality_of_;  // [element], of the last attempt
+  std::vector<Site<Dim>> next_site_of_;  // [vertex], of the last attempt
+  std::vector<double> next_quality_of_;  // [element], likewise
   double share_ = 0, stride_ = 1;
   MoveReport report_;
 };

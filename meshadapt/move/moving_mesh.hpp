@@ -2,15 +2,12 @@
 /// MovingMesh<Dim>: a mesh on its way, and how it changes when a part of it is adapted.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/quality.hpp"
-#include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/fixed_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -18,27 +15,22 @@ template <int Dim>
 struct MovingMesh {
   AnyMesh any;                         // all but coordinates, which are in site_of
   std::vector<Site<Dim>> site_of;      // [vertex]
+  std::vector<Vector<Dim>> start_of;   // [vertex], the place of the input that it was at
   std::vector<Vector<Dim>> speed_of;   // [vertex], of the last step
   std::vector<std::uint32_t> path_of;  // [vertex], see Paths; or none
-  std::vector<std::uint32_t> body_of;  // [element], see Paths; or 0
+  std::vector<std::uint8_t> is_rigid;  // [element], moves with a rigid body
   std::vector<std::uint8_t> is_held;   // [element], may not change: rigid or required
   std::vector<double> quality_of;      // [element]
   std::vector<double> made_with;       // [element], quality at first, or when it was made
   std::vector<double> came_with;       // [element], quality at first; 1 if it was not there
-
-  double quality(const Corners<Dim>& corners) const {
-    std::array<const Site<Dim>*, Dim + 1> sites;
-    for (std::size_t i = 0; i <= Dim; ++i) sites[i] = &site_of[corners[i]];
-    return meshadapt::quality<Dim>(sites);
-  }
 };
 
-/// Position and metric of a vertex of an adapted mesh.
+/// The quality of an element with these corners.
 template <int Dim>
-Site<Dim> site_in(const AdaptedMesh& adapted, VertexId vertex) {
-  Metric<Dim> metric;
-  std::copy_n(&adapted.metric.values[vertex * metric.m.size()], metric.m.size(), metric.m.begin());
-  return make_site(position_in<Dim>(adapted.mesh, vertex), metric);
+double quality_at(const std::vector<Site<Dim>>& site_of, const Corners<Dim>& corners) {
+  std::array<const Site<Dim>*, Dim + 1> sites;
+  for (std::size_t i = 0; i <= Dim; ++i) sites[i] = &site_of[corners[i]];
+  return quality<Dim>(sites);
 }
 
 /// For each entity of a mesh of which a part was adapted: the one before that it is, or the one of

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <set>
 #include <span>
 
 namespace ductile::meshadapt {
@@ -21,26 +23,34 @@ auto& required_facets(auto& mesh) {
   return Dim == 2 ? mesh.required_edges : mesh.required_triangles;
 }
 
+/// The largest reference that none of these is.
+std::int32_t other_than(const std::vector<std::int32_t>& references) {
+  const std::set<std::int32_t> used(references.begin(), references.end());
+  std::int32_t other = std::numeric_limits<std::int32_t>::max();
+  while (used.contains(other)) --other;
+  return other;
+}
+
 /// Replaces listed facets or edges that could change by those that the part came back with, which
-/// are the ones whose reference is not `kept`. Lists of indices follow.
+/// are the ones whose reference is not `held`. Lists of indices follow.
 template <int N>
 class CellsRenewal {
  public:
-  CellsRenewal(Cells<N>& cells, const std::vector<std::uint8_t>& passes, const Cells<N>& in_part,
-               const Codes<std::int32_t>& codes, const PartNumbers& numbers)
+  CellsRenewal(Cells<N>& cells, const std::vector<std::uint8_t>& changes, const Cells<N>& in_part,
+               std::int32_t held, const PartNumbers& numbers)
       : of_old_(cells.size(), none), of_part_(in_part.size(), none) {
     Cells<N> renewed;
-    const auto add = [&](std::uint32_t& index, auto vertices, std::int32_t reference,
+    const auto add = [&](std::uint32_t& index, const Cells<N>& from, std::size_t c,
                          const std::vector<VertexId>& number_of) {
+      auto vertices = from.vertices[c];
       for (VertexId& v : vertices) v = number_of[v];
       index = static_cast<std::uint32_t>(renewed.size());
-      renewed.add(vertices, reference);
+      renewed.add(vertices, from.reference[c]);
     };
     for (std::size_t c = 0; c < cells.size(); ++c)
-      if (!passes[c]) add(of_old_[c], cells.vertices[c], cells.reference[c], numbers.of_old);
+      if (!changes[c]) add(of_old_[c], cells, c, numbers.of_old);
     for (std::size_t c = 0; c < in_part.size(); ++c)
-      if (in_part.reference[c] != codes.other())
-        add(of_part_[c], in_part.vertices[c], codes[in_part.reference[c]], numbers.of_part);
+      if (in_part.reference[c] != held) add(of_part_[c], in_part, c, numbers.of_part);
     cells = std::move(renewed);
   }
 
@@ -59,41 +69,17 @@ class CellsRenewal {
 
 }  // namespace
 
-template <class Meaning>
-Codes<Meaning>::Codes(std::vector<Meaning> meanings) : meanings_(std::move(meanings)) {
-  std::sort(meanings_.begin(), meanings_.end());
-  meanings_.erase(std::unique(meanings_.begin(), meanings_.end()), meanings_.end());
-}
-
-template <class Meaning>
-std::int32_t Codes<Meaning>::code(const Meaning& meaning) const {
-  const auto at = std::lower_bound(meanings_.begin(), meanings_.end(), meaning);
-  return static_cast<std::int32_t>(at - meanings_.begin()) + 1;
-}
-
-template <int Dim>
-auto Part<Dim>::kinds_of(const MovingMesh<Dim>& whole) -> std::vector<Element> {
-  const auto& reference_of = elements_in<Dim>(whole.any).reference;
-  std::vector<Element> kinds;
-  for (std::size_t e = 0; e < reference_of.size(); ++e) {
-    const Element kind{reference_of[e], whole.body_of[e]};
-    if (kinds.empty() || kinds.back() != kind) kinds.push_back(kind);
-  }
-  return kinds;
-}
-
 template <int Dim>
 Part<Dim>::Part(const MovingMesh<Dim>& whole, const FixedMesh<Dim>& topology,
                 const std::vector<std::uint8_t>& is_chosen)
     : whole_(whole),
       topology_(topology),
       is_chosen_(is_chosen),
-      element_codes_(kinds_of(whole)),
-      facet_codes_(facets_in<Dim>(whole.any).reference),
-      edge_codes_(whole.any.edges.reference),
+      held_facet_(other_than(facets_in<Dim>(whole.any).reference)),
+      held_edge_(other_than(whole.any.edges.reference)),
       local_of_(whole.site_of.size(), none),
-      facet_passes_(facets_in<Dim>(whole.any).size(), 0),
-      edge_passes_(Dim == 3 ? whole.any.edges.size() : 0, 0) {
+      facet_changes_(facets_in<Dim>(whole.any).size(), 0),
+      edge_changes_(Dim == 3 ? whole.any.edges.size() : 0, 0) {
   mesh_.dimension = Dim;
   mesh_.name = whole.any.name;
   for (std::size_t e = 0; e < is_chosen.size(); ++e)
@@ -150,8 +136,7 @@ void Part<Dim>::take_vertices() {
   stays_.resize(vertices_.size(), 0);
   auto& cells = elements_in<Dim>(mesh_);
   for (const ElementId e : elements_)
-    cells.add(local(topology_.corners_of[e]),
-              element_codes_.code({elements_in<Dim>(whole_.any).reference[e], whole_.body_of[e]}));
+    cells.add(local(topology_.corners_of[e]), elements_in<Dim>(whole_.any).reference[e]);
 }
 
 /// Facets between the part and the others, which are not listed here, follow in take_cut().
@@ -168,10 +153,10 @@ void Part<Dim>::take_facets() {
     if (inside == 0 || outside != 0) continue;
     const auto index = static_cast<std::uint32_t>(cells.size());
     const bool held = required[f] || has_paths(corners);
-    facet_passes_[f] = !held;
+    facet_changes_[f] = !held;
     if (held) required_facets<Dim>(mesh_).push_back(index);
     if (!held && Dim == 2 && ridge[f]) mesh_.ridges.push_back(index);
-    cells.add(local(corners), held ? facet_codes_.other() : facet_codes_.code(listed.reference[f]));
+    cells.add(local(corners), held ? held_facet_ : listed.reference[f]);
     for (const VertexId v : corners)
       if (whole_.path_of[v] != none) stays_[local_of_[v]] = 1;
   }
@@ -185,7 +170,7 @@ void Part<Dim>::take_cut() {
       const ElementId other = topology_.neighbour_of[e][static_cast<std::size_t>(i)];
       if (other == none || is_chosen_[other]) continue;
       required_facets<Dim>(mesh_).push_back(static_cast<std::uint32_t>(cells.size()));
-      cells.add(local(facet_of<Dim>(topology_.corners_of[e], i)), facet_codes_.other());
+      cells.add(local(facet_of<Dim>(topology_.corners_of[e], i)), held_facet_);
     }
 }
 
@@ -202,11 +187,10 @@ void Part<Dim>::take_edges() {
       if (inside == 0) continue;
       const auto index = static_cast<std::uint32_t>(mesh_.edges.size());
       const bool held = outside != 0 || required[e] || has_paths(ends);
-      edge_passes_[e] = !held;
+      edge_changes_[e] = !held;
       if (held) mesh_.required_edges.push_back(index);
       if (ridge[e]) mesh_.ridges.push_back(index);
-      mesh_.edges.add(local(ends),
-                      held ? edge_codes_.other() : edge_codes_.code(listed.reference[e]));
+      mesh_.edges.add(local(ends), held ? held_edge_ : listed.reference[e]);
     }
   }
 }
@@ -257,12 +241,12 @@ PartNumbers Part<Dim>::number_vertices(const std::vector<VertexId>& origin_of,
 template <int Dim>
 void Part<Dim>::renew_lists(AnyMesh& any, const AnyMesh& adapted,
                             const PartNumbers& numbers) const {
-  const CellsRenewal facets(facets_in<Dim>(any), facet_passes_, facets_in<Dim>(adapted),
-                            facet_codes_, numbers);
+  const CellsRenewal facets(facets_in<Dim>(any), facet_changes_, facets_in<Dim>(adapted),
+                            held_facet_, numbers);
   facets.renew(required_facets<Dim>(any), required_facets<Dim>(adapted));
   if constexpr (Dim == 2) facets.renew(any.ridges, adapted.ridges);
   if constexpr (Dim == 3) {
-    const CellsRenewal edges(any.edges, edge_passes_, adapted.edges, edge_codes_, numbers);
+    const CellsRenewal edges(any.edges, edge_changes_, adapted.edges, held_edge_, numbers);
     edges.renew(any.required_edges, adapted.required_edges);
     edges.renew(any.ridges, adapted.ridges);
   }
@@ -286,30 +270,35 @@ void Part<Dim>::renew_elements(MovingMesh<Dim>& whole, const AnyMesh& adapted,
     if (!is_chosen_[e]) elements.vertices[e] = renumbered(elements.vertices[e], numbers.of_old);
   renew(elements.vertices, renewal,
         [&](auto e) { return renumbered(cells.vertices[e], numbers.of_part); });
-  renew(elements.reference, renewal,
-        [&](auto e) { return element_codes_[cells.reference[e]].first; });
+  renew(elements.reference, renewal, [&](auto e) { return cells.reference[e]; });
   std::vector<std::uint32_t> index_of(is_chosen_.size(), none);
   for (std::size_t e = 0; e < renewal.size(); ++e)
     if (renewal.old_of[e] != none) index_of[renewal.old_of[e]] = static_cast<std::uint32_t>(e);
   for (std::uint32_t& e : Dim == 2 ? whole.any.required_triangles : whole.any.required_tetrahedra)
     e = index_of[e];  // these are never chosen
-  renew(whole.body_of, renewal, [&](auto e) { return element_codes_[cells.reference[e]].second; });
-  renew(whole.is_held, renewal, [](auto) { return std::uint8_t{0}; });
+  for (auto* marks : {&whole.is_rigid, &whole.is_held})
+    renew(*marks, renewal, [](auto) { return std::uint8_t{0}; });
   renew(whole.made_with, renewal, [](auto) { return -1.0; });  // measured when connected anew
   renew(whole.came_with, renewal, [](auto) { return 1.0; });
 }
 
 template <int Dim>
-Renewals Part<Dim>::put_back(MovingMesh<Dim>& whole, const AdaptedMesh& adapted,
-                             const std::vector<VertexId>& origin_of) const {
+Renewals Part<Dim>::put_back(MovingMesh<Dim>& whole, const AdaptedPart<Dim>& adapted) const {
   Renewals renewals;
-  const PartNumbers numbers = number_vertices(origin_of, renewals.vertices);
+  const PartNumbers numbers = number_vertices(adapted.origins.vertex, renewals.vertices);
   renew_lists(whole.any, adapted.mesh, numbers);
   renew_elements(whole, adapted.mesh, numbers, renewals.elements);
   renew(whole.any.vertex_reference, renewals.vertices,
         [&](auto v) { return adapted.mesh.vertex_reference[v]; });
-  renew(whole.site_of, renewals.vertices, [&](auto v) { return site_in<Dim>(adapted, v); });
-  renew(whole.speed_of, renewals.vertices, [](auto) { return Vector<Dim>{}; });
+  renew(whole.site_of, renewals.vertices, [&](auto v) { return adapted.site_of[v]; });
+  for (auto* vectors : {&whole.start_of, &whole.speed_of})
+    renew(*vectors, renewals.vertices, [&](auto v) {
+      Vector<Dim> mean;
+      const auto& corners = elements_in<Dim>(mesh_).vertices[adapted.origins.host[v]];
+      for (std::size_t i = 0; i <= Dim; ++i)
+        mean += adapted.origins.weight[v * (Dim + 1) + i] * (*vectors)[vertices_[corners[i]]];
+      return mean;
+    });
   renew(whole.path_of, renewals.vertices, [](auto) { return none; });
   return renewals;
 }

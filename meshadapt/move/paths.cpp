@@ -48,7 +48,7 @@ void expect_some(bool found, const std::string& option, const std::string& what,
 template <int Dim>
 Paths<Dim>::Paths(const Executor& executor, const AnyMesh& mesh, const FixedMesh<Dim>& topology,
                   const std::vector<Vector<Dim>>& displacement_of, const MoveOptions& options)
-    : path_of_(mesh.vertex_count(), none), body_of_(topology.element_count(), 0) {
+    : path_of_(mesh.vertex_count(), none), in_body_(topology.element_count(), 0) {
   const bool is_named = !options.bodies.empty() || !options.boundaries.empty();
   const std::vector<std::uint8_t> chosen =
       is_named ? choose_named(mesh, options)
@@ -60,9 +60,9 @@ Paths<Dim>::Paths(const Executor& executor, const AnyMesh& mesh, const FixedMesh
       end_.push_back(start_.back() + displacement_of[v]);
     }
   rest_.resize(start_.size());
-  part_of_.resize(start_.size());
+  body_of_.resize(start_.size());
   connect(executor, mesh, topology, chosen);
-  for (Part& part : parts_) fit(part);
+  for (Body& body : bodies_) fit(body);
 }
 
 template <int Dim>
@@ -74,7 +74,7 @@ std::vector<std::uint8_t> Paths<Dim>::choose_named(const AnyMesh& mesh,
     bool found = false;
     choose(elements.vertices, elements.reference, reference, chosen, [&](std::size_t e) {
       found = true;
-      body_of_[e] = 1;
+      in_body_[e] = 1;
     });
     expect_some(found, "bodies", "elements", reference);
   }
@@ -116,10 +116,10 @@ std::vector<std::uint8_t> Paths<Dim>::choose_displaced(
       region.moves_inside = region.moves_inside || (inside && chosen[v]);
     }
   }
-  for (std::size_t e = 0; e < body_of_.size(); ++e) {
+  for (std::size_t e = 0; e < in_body_.size(); ++e) {
     const Region& region = region_of[regions.lowest(static_cast<std::uint32_t>(e))];
-    body_of_[e] = region.has_inside ? region.moves_inside : !region.stays;
-    if (body_of_[e] != 0)
+    in_body_[e] = region.has_inside ? region.moves_inside : !region.stays;
+    if (in_body_[e])
       for (const VertexId v : topology.corners_of[e]) chosen[v] = 1;
   }
   return chosen;
@@ -130,65 +130,79 @@ template <int Dim>
 void Paths<Dim>::connect(const Executor& executor, const AnyMesh& mesh,
                          const FixedMesh<Dim>& topology, const std::vector<std::uint8_t>& chosen) {
   DisjointSets sets(executor, mesh.vertex_count());
-  parallel_for(executor, body_of_.size(), [&](std::size_t e) {
-    if (body_of_[e] == 0) return;
+  parallel_for(executor, in_body_.size(), [&](std::size_t e) {
+    if (!in_body_[e]) return;
     for (const VertexId v : topology.corners_of[e]) sets.unite(topology.corners_of[e][0], v);
   });
   for (const Facet<Dim>& facet : facets_in<Dim>(mesh).vertices)
     if (std::ranges::all_of(facet, [&](VertexId v) { return chosen[v] != 0; }))
       for (const VertexId v : facet) sets.unite(facet[0], v);
-  std::vector<std::uint32_t> part_at(mesh.vertex_count(), none);  // [lowest vertex]
+  std::vector<std::uint32_t> body_at(mesh.vertex_count(), none);  // [lowest vertex]
   for (std::size_t v = 0; v < chosen.size(); ++v) {
     if (path_of_[v] == none) continue;
-    std::uint32_t& part = part_at[sets.lowest(static_cast<std::uint32_t>(v))];
-    if (part == none) {
-      part = static_cast<std::uint32_t>(parts_.size());
-      parts_.emplace_back();
+    std::uint32_t& number = body_at[sets.lowest(static_cast<std::uint32_t>(v))];
+    if (number == none) {
+      number = static_cast<std::uint32_t>(bodies_.size());
+      bodies_.emplace_back();
     }
-    parts_[part].paths.push_back(path_of_[v]);
+    Body& body = bodies_[number];
+    body.paths.push_back(path_of_[v]);
+    body_of_[path_of_[v]] = number;
     for (const ElementId e : topology.elements_of(static_cast<VertexId>(v)))
       for (const VertexId w : topology.corners_of[e])
-        parts_[part].margin =
-            std::max(parts_[part].margin,
-                     reach_in_edges * norm(topology.position_of[w] - topology.position_of[v]));
-    part_of_[path_of_[v]] = part;
+        body.margin = std::max(
+            body.margin, reach_in_edges * norm(topology.position_of[w] - topology.position_of[v]));
   }
-  for (std::size_t e = 0; e < body_of_.size(); ++e)
-    if (body_of_[e] != 0) body_of_[e] = part_of_[path_of_[topology.corners_of[e][0]]] + 1;
 }
 
 template <int Dim>
-void Paths<Dim>::fit(Part& part) {
+std::vector<std::uint8_t> Paths<Dim>::rigid_elements(const FixedMesh<Dim>& topology) const {
+  std::vector<std::uint8_t> marks = in_body_;
+  for (std::size_t e = 0; e < marks.size(); ++e)
+    if (marks[e]) marks[e] = bodies_[body_of_[path_of_[topology.corners_of[e][0]]]].is_rigid;
+  return marks;
+}
+
+template <int Dim>
+void Paths<Dim>::fit(Body& body) {
   std::vector<Vector<Dim>> from, to;
   double largest = 0, error = 0;
-  for (const std::uint32_t p : part.paths) {
+  for (const std::uint32_t p : body.paths) {
     from.push_back(start_[p]);
     to.push_back(end_[p]);
     largest = std::max(largest, norm(end_[p] - start_[p]));
   }
-  part.moves = largest > 0;
-  part.motion = closest_motion(from, to);
-  for (const std::uint32_t p : part.paths) {
-    rest_[p] = end_[p] - part.motion.moved(start_[p], 1);
+  body.moves = largest > 0;
+  body.motion = closest_motion(from, to);
+  for (const std::uint32_t p : body.paths) {
+    rest_[p] = end_[p] - body.motion.moved(start_[p], 1);
     error = std::max(error, norm(rest_[p]));
   }
-  part.is_rigid = !part.moves || error < rigid_tolerance * largest;
+  body.is_rigid = !body.moves || error < rigid_tolerance * largest;
 }
 
 template <int Dim>
 Vector<Dim> Paths<Dim>::at(std::uint32_t path, double share) const {
-  const Part& part = parts_[part_of_[path]];
-  if (!part.moves || share == 0) return start_[path];
+  const Body& body = bodies_[body_of_[path]];
+  if (!body.moves || share == 0) return start_[path];
   if (share == 1) return end_[path];
-  if (!part.is_rigid) return start_[path] + share * (end_[path] - start_[path]);
-  return part.motion.moved(start_[path], share) + share * rest_[path];
+  if (!body.is_rigid) return start_[path] + share * (end_[path] - start_[path]);
+  return body.motion.moved(start_[path], share) + share * rest_[path];
+}
+
+template <int Dim>
+std::optional<Rotation<Dim>> Paths<Dim>::rotation(std::uint32_t path, double share,
+                                                  double next) const {
+  const Body& body = bodies_[body_of_[path]];
+  if (!body.is_rigid) return std::nullopt;
+  return body.moves ? body.motion.part(next - share) : Rotation<Dim>{};
 }
 
 template <int Dim>
 double Paths<Dim>::first_stride() const {
   double turn = std::numbers::pi / 4;
-  for (const Part& part : parts_)
-    if (part.is_rigid && part.moves) turn = std::max(turn, std::abs(part.motion.angle));
+  for (const Body& body : bodies_)
+    if (body.is_rigid && body.moves) turn = std::max(turn, std::abs(body.motion.rotation.angle));
   return std::numbers::pi / 4 / turn;
 }
 
@@ -200,10 +214,10 @@ std::vector<std::uint8_t> Paths<Dim>::within_reach(const Executor& executor,
     Vector<Dim> low, high;
   };
   std::vector<Box> boxes;
-  for (const Part& part : parts_) {
-    if (!part.moves) continue;
-    Box box{at(part.paths[0], share), at(part.paths[0], share)};
-    for (const std::uint32_t p : part.paths)
+  for (const Body& body : bodies_) {
+    if (!body.moves) continue;
+    Box box{at(body.paths[0], share), at(body.paths[0], share)};
+    for (const std::uint32_t p : body.paths)
       for (const Vector<Dim>& point : {at(p, share), at(p, next)})
         for (int i = 0; i < Dim; ++i) {
           box.low[i] = std::min(box.low[i], point[i]);
@@ -212,8 +226,8 @@ std::vector<std::uint8_t> Paths<Dim>::within_reach(const Executor& executor,
     double side = 0;
     for (int i = 0; i < Dim; ++i) side = std::max(side, box.high[i] - box.low[i]);
     for (int i = 0; i < Dim; ++i) {
-      box.low[i] -= reach * side + part.margin;
-      box.high[i] += reach * side + part.margin;
+      box.low[i] -= reach * side + body.margin;
+      box.high[i] += reach * side + body.margin;
     }
     boxes.push_back(box);
   }

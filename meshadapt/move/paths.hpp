@@ -4,29 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/move.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "move/rigid_motion.hpp"
 
 namespace ductile::meshadapt {
-
-/// A turn by `angle` about an axis through `pivot`, which moves by `shift`.
-template <int Dim>
-struct RigidMotion {
-  Vector<Dim> pivot, shift;
-  double angle = 0;
-  Vector<3> axis{{0, 0, 1}};
-
-  Vector<Dim> moved(const Vector<Dim>& point, double share) const;
-};
-
-/// The rigid motion that takes `from` to `to` best in the sense of least squares, chosen as move()
-/// says. There is at least one point, and as many of both.
-template <int Dim>
-RigidMotion<Dim> closest_motion(const std::vector<Vector<Dim>>& from,
-                                const std::vector<Vector<Dim>>& to);
 
 template <int Dim>
 class Paths {
@@ -37,11 +23,12 @@ class Paths {
 
   /// [vertex of the input] The number of its path, or none.
   const std::vector<std::uint32_t>& path_of() const { return path_of_; }
-  /// [element of the input] The number of its body from 1 on, or 0.
-  const std::vector<std::uint32_t>& body_of() const { return body_of_; }
+  /// [element of the input] Does it belong to a body that moves rigidly?
+  std::vector<std::uint8_t> rigid_elements(const FixedMesh<Dim>& topology) const;
 
-  bool is_rigid(std::uint32_t body) const { return parts_[body - 1].is_rigid; }
   Vector<Dim> at(std::uint32_t path, double share) const;
+  /// The rotation of a body between two shares of the way; none if it deforms.
+  std::optional<Rotation<Dim>> rotation(std::uint32_t path, double share, double next) const;
 
   /// A share of the way on which nothing turns by more than 45 degrees.
   double first_stride() const;
@@ -53,35 +40,30 @@ class Paths {
                                          double next) const;
 
  private:
-  struct Part {  // connected vertices
+  struct Body {  // connected vertices
     std::vector<std::uint32_t> paths;
     bool is_rigid = false, moves = false;
     double margin = 0;  // a few times its longest edge
     RigidMotion<Dim> motion;
   };
 
-  /// Marks the vertices that have a displacement, and sets body_of_ to 1 in bodies.
+  /// Both mark the vertices that have a displacement, and elements in in_body_.
   std::vector<std::uint8_t> choose_named(const AnyMesh& mesh, const MoveOptions& options);
   std::vector<std::uint8_t> choose_displaced(const runtime::Executor& executor, const AnyMesh& mesh,
                                              const FixedMesh<Dim>& topology,
                                              const std::vector<Vector<Dim>>& displacement_of);
   void connect(const runtime::Executor& executor, const AnyMesh& mesh,
                const FixedMesh<Dim>& topology, const std::vector<std::uint8_t>& chosen);
-  void fit(Part& part);
+  void fit(Body& body);
 
-  std::vector<std::uint32_t> path_of_, body_of_;
+  std::vector<std::uint32_t> path_of_;
+  std::vector<std::uint8_t> in_body_;     // [element]
   std::vector<Vector<Dim>> start_, end_;  // [path]
   std::vector<Vector<Dim>> rest_;         // [path], end minus where the rigid motion leads
-  std::vector<std::uint32_t> part_of_;    // [path]
-  std::vector<Part> parts_;               // [body - 1]
+  std::vector<std::uint32_t> body_of_;    // [path]
+  std::vector<Body> bodies_;
 };
 
-extern template struct RigidMotion<2>;
-extern template struct RigidMotion<3>;
-extern template RigidMotion<2> closest_motion(const std::vector<Vector<2>>&,
-                                              const std::vector<Vector<2>>&);
-extern template RigidMotion<3> closest_motion(const std::vector<Vector<3>>&,
-                                              const std::vector<Vector<3>>&);
 extern template class Paths<2>;
 extern template class Paths<3>;
 

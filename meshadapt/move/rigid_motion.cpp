@@ -1,9 +1,8 @@
+#include "move/rigid_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-
-#include "ductile/meshadapt/metric.hpp"
-#include "move/paths.hpp"
 
 namespace ductile::meshadapt {
 
@@ -19,16 +18,16 @@ Vector<Dim> mean(const std::vector<Vector<Dim>>& points) {
 }
 
 /// Rodrigues' formula; in 2D the axis is z.
-Vector<2> turned(const Vector<2>& d, const Vector<3>&, double angle) {
+Vector<2> turned_by(const Vector<2>& d, const Vector<3>&, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {{c * d[0] - s * d[1], s * d[0] + c * d[1]}};
 }
-Vector<3> turned(const Vector<3>& d, const Vector<3>& axis, double angle) {
+Vector<3> turned_by(const Vector<3>& d, const Vector<3>& axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return c * d + s * cross(axis, d) + (1 - c) * dot(axis, d) * axis;
 }
 
-/// Axis times d.
+/// The cross product of the axis and d.
 Vector<2> quarter_turn(const Vector<2>& d, const Vector<3>&) { return {{-d[1], d[0]}}; }
 Vector<3> quarter_turn(const Vector<3>& d, const Vector<3>& axis) { return cross(axis, d); }
 
@@ -36,15 +35,42 @@ Vector<3> quarter_turn(const Vector<3>& d, const Vector<3>& axis) { return cross
 Vector<2> along(const Vector<2>&, const Vector<3>&) { return {}; }
 Vector<3> along(const Vector<3>& d, const Vector<3>& axis) { return dot(axis, d) * axis; }
 
-/// Sets angle and axis of the closest rotation, from the sums of the products of components of
-/// points relative to their centroids.
 template <int Dim>
-using Products = std::array<std::array<double, Dim>, Dim>;
-void set_rotation(RigidMotion<2>& motion, const Products<2>& s) {
-  motion.angle = std::atan2(s[0][1] - s[1][0], s[0][0] + s[1][1]);
+Vector<Dim> unit_vector(int axis) {
+  Vector<Dim> unit;
+  unit[axis] = 1;
+  return unit;
 }
+
+}  // namespace
+
+template <int Dim>
+Vector<Dim> Rotation<Dim>::turned(const Vector<Dim>& d) const {
+  return turned_by(d, axis, angle);
+}
+
+template <int Dim>
+Metric<Dim> Rotation<Dim>::turned(const Metric<Dim>& m) const {
+  LinearMap<Dim> back;  // unit vectors before the rotation
+  const Rotation inverse{-angle, axis};
+  for (int i = 0; i < Dim; ++i)
+    back[static_cast<std::size_t>(i)] = inverse.turned(unit_vector<Dim>(i));
+  Metric<Dim> result;
+  std::size_t component = 0;
+  for (std::size_t column = 0; column < Dim; ++column)
+    for (std::size_t row = 0; row <= column; ++row, ++component)
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j < Dim; ++j)
+          result.m[component] += back[row][i] * m(i, j) * back[column][j];
+  return result;
+}
+
+Rotation<2> rotation_of(const LinearMap<2>& map) {
+  return {std::atan2(map[0][1] - map[1][0], map[0][0] + map[1][1]), {{0, 0, 1}}};
+}
+
 /// The quaternion of the largest eigenvalue (Horn, J. Opt. Soc. Am. A 4, 1987).
-void set_rotation(RigidMotion<3>& motion, const Products<3>& s) {
+Rotation<3> rotation_of(const LinearMap<3>& s) {
   Metric<4> matrix;
   matrix.m = {s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2],
               s[2][0] - s[0][2],           s[0][1] + s[1][0], -s[0][0] + s[1][1] - s[2][2],
@@ -56,15 +82,19 @@ void set_rotation(RigidMotion<3>& motion, const Products<3>& s) {
   if (q[0] < 0) q *= -1;
   const Vector<3> v{{q[1], q[2], q[3]}};
   const double sine = norm(v);
-  motion.angle = 2 * std::atan2(sine, q[0]);
-  if (sine > 0) motion.axis = 1 / sine * v;
+  if (!(sine > 0)) return {};
+  return {2 * std::atan2(sine, q[0]), 1 / sine * v};
 }
 
-}  // namespace
-
 template <int Dim>
-Vector<Dim> RigidMotion<Dim>::moved(const Vector<Dim>& point, double share) const {
-  return pivot + share * shift + turned(point - pivot, axis, share * angle);
+LinearMap<Dim> deformation(const std::array<Vector<Dim>, Dim + 1>& from,
+                           const std::array<Vector<Dim>, Dim + 1>& to) {
+  const auto gradient = hat_gradients<Dim>(from);
+  LinearMap<Dim> map{};
+  for (std::size_t i = 0; i <= Dim; ++i)
+    for (int axis = 0; axis < Dim; ++axis)
+      map[static_cast<std::size_t>(axis)] += gradient[i][axis] * to[i];
+  return map;
 }
 
 template <int Dim>
@@ -74,28 +104,31 @@ RigidMotion<Dim> closest_motion(const std::vector<Vector<Dim>>& from,
   motion.pivot = mean(from);
   const Vector<Dim> end = mean(to);
   motion.shift = end - motion.pivot;
-  Products<Dim> products{};
+  LinearMap<Dim> products{};
   double radius = 0;
   for (std::size_t p = 0; p < from.size(); ++p) {
     const Vector<Dim> a = from[p] - motion.pivot, b = to[p] - end;
     radius = std::max(radius, norm(a));
-    for (std::size_t i = 0; i < Dim; ++i)
-      for (std::size_t j = 0; j < Dim; ++j) products[i][j] += a.x[i] * b.x[j];
+    for (std::size_t i = 0; i < Dim; ++i) products[i] += a.x[i] * b;
   }
-  set_rotation(motion, products);
-  const Vector<Dim> slide = along(motion.shift, motion.axis), across = motion.shift - slide;
-  const double tangent = std::tan(motion.angle / 2);
-  if (!(std::abs(motion.angle) > 1e-9)) return motion;
+  motion.rotation = rotation_of(products);
+  const auto& [angle, axis] = motion.rotation;
+  if (!(std::abs(angle) > 1e-9)) return motion;
+  const Vector<Dim> slide = along(motion.shift, axis), across = motion.shift - slide;
   const Vector<Dim> to_centre =
-      0.5 * across + 1 / (2 * tangent) * quarter_turn(across, motion.axis);
+      0.5 * across + 1 / (2 * std::tan(angle / 2)) * quarter_turn(across, axis);
   if (norm(to_centre) > 1.05 * radius) return motion;
   motion.pivot += to_centre;
   motion.shift = slide;
   return motion;
 }
 
-template struct RigidMotion<2>;
-template struct RigidMotion<3>;
+template struct Rotation<2>;
+template struct Rotation<3>;
+template LinearMap<2> deformation<2>(const std::array<Vector<2>, 3>&,
+                                     const std::array<Vector<2>, 3>&);
+template LinearMap<3> deformation<3>(const std::array<Vector<3>, 4>&,
+                                     const std::array<Vector<3>, 4>&);
 template RigidMotion<2> closest_motion(const std::vector<Vector<2>>&,
                                        const std::vector<Vector<2>>&);
 template RigidMotion<3> closest_motion(const std::vector<Vector<3>>&,

@@ -29,11 +29,9 @@ class Walls {
     if constexpr (Dim == 3) stop_on_edges(mesh);
     for (const std::uint32_t v : mesh.corners) stop(v);
     for (const std::uint32_t v : mesh.required_vertices) stop(v);
-    for (const std::uint32_t e : mesh.required_edges)
-      for (const VertexId v : mesh.edges.vertices[e]) stop(v);
-    if constexpr (Dim == 3)
-      for (const std::uint32_t t : mesh.required_triangles)
-        for (const VertexId v : mesh.triangles.vertices[t]) stop(v);
+    stop_all(mesh.edges.vertices, mesh.required_edges);
+    stop_all(mesh.triangles.vertices, mesh.required_triangles);
+    stop_all(mesh.tetrahedra.vertices, mesh.required_tetrahedra);
   }
 
   bool may_move(VertexId v) const { return rank_of_[v] < Dim; }
@@ -55,6 +53,10 @@ class Walls {
   };
 
   void stop(VertexId v) { rank_of_[v] = Dim; }
+  void stop_all(const auto& cells, const std::vector<std::uint32_t>& indices) {
+    for (const std::uint32_t i : indices)
+      for (const VertexId v : cells[i]) stop(v);
+  }
 
   /// A vertex stays where more planes meet than leave it a direction, or a plane has two
   /// references.

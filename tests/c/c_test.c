@@ -492,6 +492,7 @@ static void test_geometry(void) {
 static void test_moving(void) {
   ductile_mesh *mesh = make_disk(), *moved = NULL, *again = NULL;
   double displacement[2000];
+  int32_t origins[1000];
   const int32_t unknown = 77;
   const int64_t count = ductile_mesh_count(mesh, DUCTILE_VERTICES);
   for (int64_t i = 0; i < count; ++i) {
@@ -507,6 +508,9 @@ static void test_moving(void) {
     EXPECT(ductile_mesh_coordinates(moved)[i] ==
            ductile_mesh_coordinates(mesh)[i] + displacement[i]);
   EXPECT(ductile_mesh_metric(moved) != NULL);
+  EXPECT(ductile_move_origins(moved, origins, NULL, NULL) == DUCTILE_OK);
+  for (int64_t i = 0; i < count; ++i) EXPECT(origins[i] == i);
+  EXPECT(ductile_move_origins(mesh, origins, NULL, NULL) == DUCTILE_WRONG_INPUT);
   EXPECT(ductile_move(moved, displacement, 0, NULL, NULL, &again) == DUCTILE_OK);
   ductile_mesh_destroy(again);
   ductile_mesh_destroy(moved);

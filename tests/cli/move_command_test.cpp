@@ -68,16 +68,25 @@ TEST(MoveCommand, WritesWhatTheLibraryGives) {
   EXPECT_EQ(meshadapt::read_field(files.path("b.f.sol")).values, moved.fields[0].values);
 }
 
-TEST(MoveCommand, MmgsOptionDoesTheSame) {
+TEST(MoveCommand, MmgsOptionAllowsWhatMmgDoes) {
   const Files files(0.4);
   ASSERT_EQ(files.folder.run("move a.mesh u.sol -o b.mesh").status, 0);
-  for (const char* lag : {"1", "2"}) {
+  const AnyMesh before = meshadapt::read_mesh(files.path("a.mesh")),
+                moved = meshadapt::read_mesh(files.path("b.mesh"));
+  const auto lagged = [](const Files& in, const char* lag) {
     const Outcome outcome =
-        files.folder.run(std::string("adapt a.mesh -sol u.sol -o c.mesh -lag ") + lag);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(meshadapt::read_mesh(files.path("c.mesh")).coordinates,
-              meshadapt::read_mesh(files.path("b.mesh")).coordinates);
-  }
+        in.folder.run(std::string("adapt a.mesh -sol u.sol -o c.mesh -lag ") + lag);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return meshadapt::read_mesh(in.path("c.mesh"));
+  };
+  EXPECT_EQ(lagged(files, "2").coordinates, moved.coordinates);
+  EXPECT_NE(moved.vertex_count(), before.vertex_count());
+  const Files near(0.2);
+  const AnyMesh swapped = lagged(near, "1");
+  EXPECT_EQ(swapped.vertex_count(), before.vertex_count());
+  EXPECT_NE(swapped.triangles, before.triangles);
+  const Files nearer(0.05);
+  EXPECT_EQ(lagged(nearer, "0").triangles, before.triangles);
   const Files far(0.55);
   const Outcome held = far.folder.run("adapt a.mesh -lag 0 -sol u.sol -o d.mesh");
   EXPECT_EQ(held.status, 1);
@@ -85,6 +94,45 @@ TEST(MoveCommand, MmgsOptionDoesTheSame) {
   const Outcome other = files.folder.run("adapt a.mesh -lag 1 -sol u.sol -hausd 1 -o d.mesh");
   EXPECT_EQ(other.status, 2);
   EXPECT_TRUE(contains(other.err, "options -lag and -hausd")) << other.err;
+}
+
+/// Nothing that a mesh's file holds is lost without a warning.
+TEST(MoveCommand, FieldsOfTheMeshGoAlong) {
+  const Files files(0.4);
+  std::vector<double> marks;
+  for (const auto reference : files.mesh.triangles.reference) marks.push_back(reference);
+  const std::vector<double> load(marks.size(), 1.5);
+  const auto sizes = meshadapt::constant_metric(files.mesh, 0.05);
+  using Place = meshadapt::NamedField::Place;
+  const std::vector<meshadapt::NamedField> fields{
+      {"shift", AnyField::Type::vector, files.displacement.values},
+      {"heat", AnyField::Type::scalar, files.field.values},
+      {"load", AnyField::Type::scalar, load, Place::elements},
+      {"material", AnyField::Type::scalar, marks, Place::elements, true},
+      {"metric", AnyField::Type::symmetric, sizes.values}};
+  meshadapt::write_mesh(files.path("a.vtu"), files.mesh, {.fields = fields});
+  ASSERT_EQ(files.folder.run("move a.vtu shift -o b.vtu --json b.json").status, 0);
+  const auto moved = meshadapt::read_mesh_with_fields(files.path("b.vtu"));
+  std::string names;
+  for (const auto& field : moved.fields) names += field.name + " ";
+  EXPECT_EQ(names, "metric heat load material ");
+  for (const auto& field : moved.fields)
+    if (field.name == "material") {
+      for (std::size_t t = 0; t < field.values.size(); ++t)
+        EXPECT_EQ(field.values[t], moved.mesh.triangles.reference[t]);
+    }
+  // The file's metric is the one to adapt to.
+  EXPECT_GT(moved.mesh.triangles.size(), 1.2 * static_cast<double>(files.mesh.triangles.size()));
+  const std::string json = files.folder.read("b.json");
+  for (const char* part : {"\"before\": {\"file\": \"a.vtu\"", "\"share\": 1,", "\"stopped\": null",
+                           "\"quality\"", "\"warnings\": []"})
+    EXPECT_TRUE(contains(json, part)) << part << json;
+  const Outcome outcome = files.folder.run("move a.vtu shift -o c.mesh --json -");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.err, "a.vtu: its fields are not carried: heat, load, material"))
+      << outcome.err;
+  EXPECT_EQ(outcome.out.front(), '{');
+  EXPECT_EQ(files.folder.run("move a.vtu shift -o d.vtu --turn nothing").status, 2);
 }
 
 TEST(MoveCommand, ABlockedWayWritesNothingUnlessAsked) {

@@ -1,4 +1,4 @@
-#include "move/paths.hpp"
+#include "move/rigid_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,10 +27,11 @@ TYPED_TEST(RigidMotionIn, IsFound) {
       wanted.pivot[i] = uniform(random, -1, 1);
       wanted.shift[i] = uniform(random, -1, 1);
     }
-    wanted.angle = uniform(random, 0.01, 3.1) * (Dim == 2 && trial % 2 ? -1 : 1);
+    Rotation<Dim>& rotation = wanted.rotation;
+    rotation.angle = uniform(random, 0.01, 3.1) * (Dim == 2 && trial % 2 ? -1 : 1);
     if (Dim == 3)
-      for (int i = 0; i < 3; ++i) wanted.axis[i] = uniform(random, -1, 1);
-    wanted.axis *= 1 / norm(wanted.axis);
+      for (int i = 0; i < 3; ++i) rotation.axis[i] = uniform(random, -1, 1);
+    rotation.axis *= 1 / norm(rotation.axis);
     std::vector<Vector<Dim>> from, to;
     const bool is_flat = trial % 5 == 0;
     for (int p = 0; p < 20; ++p) {
@@ -42,7 +43,37 @@ TYPED_TEST(RigidMotionIn, IsFound) {
     const auto found = closest_motion(from, to);
     for (std::size_t p = 0; p < from.size(); ++p)
       EXPECT_LT(norm(found.moved(from[p], 1) - to[p]), 1e-12) << trial;
-    EXPECT_NEAR(std::abs(found.angle), std::abs(wanted.angle), 1e-9) << trial;
+    EXPECT_NEAR(std::abs(found.rotation.angle), std::abs(rotation.angle), 1e-9) << trial;
+  }
+}
+
+/// A stretch along any axes has no influence on the rotation of a deformation.
+TYPED_TEST(RigidMotionIn, APolarDecompositionFindsTheRotation) {
+  constexpr int Dim = TypeParam::value;
+  Random random(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto rotation = [&](double most) {
+      Rotation<Dim> result{uniform(random, 0.01, most), {{0, 0, 1}}};
+      if (Dim == 3)
+        for (int i = 0; i < 3; ++i) result.axis[i] = uniform(random, -1, 1);
+      result.axis *= 1 / norm(result.axis);
+      return result;
+    };
+    const Rotation<Dim> wanted = rotation(3.1), axes = rotation(3);
+    const Rotation<Dim> back{-axes.angle, axes.axis};
+    Vector<Dim> stretch;
+    for (int i = 0; i < Dim; ++i) stretch[i] = uniform(random, 0.2, 5);
+    std::array<Vector<Dim>, Dim + 1> from, to;
+    for (std::size_t corner = 0; corner <= Dim; ++corner) {
+      for (int i = 0; i < Dim; ++i) from[corner][i] = uniform(random, 0, 0.2);
+      if (corner > 0) from[corner].x[corner - 1] += 1;
+      Vector<Dim> point = back.turned(from[corner]);
+      for (int i = 0; i < Dim; ++i) point[i] *= stretch[i];
+      to[corner] = wanted.turned(axes.turned(point));
+    }
+    const Rotation<Dim> found = rotation_of(deformation<Dim>(from, to));
+    for (const Vector<Dim>& point : from)
+      EXPECT_LT(norm(found.turned(point) - wanted.turned(point)), 1e-10) << trial;
   }
 }
 

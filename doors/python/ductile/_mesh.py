@@ -352,7 +352,7 @@ class Mesh:
     def move(self, displacement: Any, *, bodies: Iterable[int] = (), boundaries: Iterable[int] = (),
              metric: Optional[MetricLike] = None, hmin: float = 0, hmax: float = 0, hgrad: float = 0,
              fields: Optional[Mapping[str, Any]] = None, conservative: bool = False,
-             keep_partial: bool = False, threads: int = 0) -> Mesh:
+             turned: Iterable[str] = (), keep_partial: bool = False, threads: int = 0) -> Mesh:
         """A new mesh, in which bodies have moved; it is adapted near them where it must be.
 
         Parameters
@@ -363,8 +363,9 @@ class Mesh:
             References of cells and of facets that move. By default displacements decide: vertices
             move that have one, and regions with such vertices inside.
         metric : optional
-            The sizes to adapt to, as in `remesh`; vertices take them along. By default those of the
-            mesh. In a loop, give the `metric` of the moved mesh to the next call.
+            The sizes to adapt to, as in `remesh`; vertices take them along, and tensors turn with the
+            mesh. By default those of the mesh. In a loop, give the `metric` of the moved mesh to the
+            next call.
         hmin, hmax, hgrad : float, optional
             As in `remesh`.
         fields : dict of str to array_like, optional
@@ -372,6 +373,8 @@ class Mesh:
             `cell_fields`.
         conservative : bool, optional
             Keep their integrals instead of their values.
+        turned : iterable of str, optional
+            The fields of vectors or tensors that turn with the mesh, such as directions of fibres.
         keep_partial : bool, optional
             If the way is blocked, return the mesh of the place that was reached; `report.stopped`
             says why. Otherwise `Error` is raised.
@@ -379,7 +382,8 @@ class Mesh:
         Returns
         -------
         Mesh
-            With `metric`, `report`, `fields` and `cell_fields`.
+            With `metric`, `report`, `fields`, `cell_fields` and `origin`: places of this mesh, before
+            the motion.
 
         Examples
         --------
@@ -395,15 +399,16 @@ class Mesh:
         options.smallest_size, options.largest_size = number(hmin, "hmin"), number(hmax, "hmax")
         options.gradation = max(0.0, number(hgrad, "hgrad"))
         options.keep_partial = flag(keep_partial, "keep_partial")
+        options.turned = list(turned)
         given = [field(name, values, self._data, None)
                  for name, values in mapping(fields or {}, "fields").items()]
         runs = executor(threads)
         with named(self.dim):
             rows = None if metric is None else as_rows(self, metric, runs)
-            data, tensors, carried, report = _ductile.move(
+            data, tensors, carried, origin, report = _ductile.move(
                 self._data, vectors, rows, (given, flag(conservative, "conservative")), options, runs)
         out = Mesh._of(data)
-        out.metric, out.report = tensors, report
+        out.metric, out.report, out._origin = tensors, report, Origin(*origin)
         for (name, _, on_cells, _), values in zip(given, carried):
             shaped = values.reshape(-1, *np.shape((fields or {})[name])[1:])
             (out.cell_fields if on_cells else out.fields)[name] = shaped
@@ -529,7 +534,7 @@ class Mesh:
 
     @property
     def origin(self) -> Origin:
-        """Of an adapted mesh: which vertex, facet and cell of the mesh it was made from each one is."""
+        """Of an adapted or moved mesh: which vertex, facet and cell of the mesh before each one is."""
         if self._origin is None:
             self._origin = Origin(*_ductile.origins(self._require_source(), self._data))
         return self._origin

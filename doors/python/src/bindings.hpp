@@ -13,6 +13,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/sizes.hpp"
+#include "ductile/meshadapt/transfer.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::python {
@@ -75,6 +76,9 @@ inline meshadapt::AnyField field_of(const Given<double>& array, meshadapt::AnyFi
                                     int dimension, const char* name) {
   return {dimension, static_cast<std::size_t>(array.shape(0)), {type}, copied(array), name};
 }
+
+/// The arrays of a Python Origin.
+py::tuple arrays_of(meshadapt::Origins&& origins, int dimension);
 
 /// The sizes for this mesh: sets the dimensions of places given as "facets" or "cells".
 meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Sizes sizes);

@@ -64,7 +64,9 @@ py::tuple moved(const AnyMesh& mesh, const Given<double>& displacement, const Mo
   const Shape shape{signed_size(result.mesh.vertex_count()), signed_size(stride_of(result.metric))};
   return py::make_tuple(std::make_shared<AnyMesh>(std::move(result.mesh)),
                         take(std::move(result.metric.values), shape),
-                        taken(result.fields, mesh.dimension), std::move(result.report));
+                        taken(result.fields, mesh.dimension),
+                        arrays_of(std::move(result.origins), mesh.dimension),
+                        std::move(result.report));
 }
 
 }  // namespace
@@ -75,6 +77,7 @@ void bind_move(py::module_& module) {
       .def_readwrite("bodies", &MoveOptions::bodies)
       .def_readwrite("boundaries", &MoveOptions::boundaries)
       .def_readwrite("remesh_below", &MoveOptions::remesh_below)
+      .def_readwrite("turned", &MoveOptions::turned)
       .def_readwrite("keep_partial", &MoveOptions::keep_partial)
       .def_readwrite("smallest_size", &MoveOptions::smallest_size)
       .def_readwrite("largest_size", &MoveOptions::largest_size)

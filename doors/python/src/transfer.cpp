@@ -21,10 +21,7 @@ using runtime::ExecutorOptions;
 py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
   auto found = work(
       {}, [&](const Executor& executor) { return meshadapt::origins(executor, before, after); });
-  const Shape shape{signed_size(found.vertex.size()), before.dimension + 1};
-  return py::make_tuple(take(std::move(found.vertex)), take(std::move(found.facet)),
-                        take(std::move(found.element)), take(std::move(found.host)),
-                        take(std::move(found.weight), shape));
+  return arrays_of(std::move(found), before.dimension);
 }
 
 /// The type of the rows of an array, whether they belong to cells (else to vertices), and whether
@@ -44,6 +41,13 @@ py::tuple transfer(const AnyMesh& before, const AnyMesh& after, const Given<doub
 }
 
 }  // namespace
+
+py::tuple arrays_of(meshadapt::Origins&& origins, int dimension) {
+  const Shape shape{signed_size(origins.vertex.size()), dimension + 1};
+  return py::make_tuple(take(std::move(origins.vertex)), take(std::move(origins.facet)),
+                        take(std::move(origins.element)), take(std::move(origins.host)),
+                        take(std::move(origins.weight), shape));
+}
 
 void bind_transfer(py::module_& module) {
   using meshadapt::TransferReport;

@@ -91,17 +91,70 @@ def test_wrong_arguments_are_named():
             call()
 
 
-def test_the_example_turns_its_body(tmp_path, capsys):
+def test_origins_lead_to_the_mesh_before():
+    mesh = disc_in_square()
+    new = mesh.move(by(mesh, [0.3, 0]), bodies=[3], fields={"place": mesh.points})
+    kept = new.origin.vertices >= 0
+    assert new.report.adaptations > 0 and 0.3 < kept.mean() < 1
+    body = np.unique(new.cells[new.refs == 3])
+    np.testing.assert_allclose(new.points[body], mesh.points[new.origin.vertices[body]] + [0.3, 0])
+    hosts = mesh.points[mesh.cells[new.origin.host]]
+    np.testing.assert_allclose(np.einsum("nc,ncd->nd", new.origin.weights, hosts),
+                               new.fields["place"], atol=1e-12)
+    old = new.origin.cells >= 0
+    np.testing.assert_array_equal(new.refs[old], mesh.refs[new.origin.cells[old]])
+
+
+def test_directions_turn_if_asked():
+    mesh = disc_in_square(centre=(0.5, 0.5))
+    c, s = np.cos(1), np.sin(1)
+    quarter = np.array([[c, s], [-s, c]])
+    u = by(mesh, (mesh.points @ quarter + 0.5 - [0.5, 0.5] @ quarter - mesh.points)[np.unique(
+        mesh.cells[mesh.refs == 3])])
+    fibre = np.tile([2.0, 0.5], (len(mesh.cells), 1))
+    new = mesh.move(u, bodies=[3], fields={"fibre": fibre, "still": fibre}, turned=["fibre"])
+    inside = new.refs == 3
+    np.testing.assert_allclose(new.cell_fields["fibre"][inside], (fibre @ quarter)[:inside.sum()])
+    np.testing.assert_array_equal(new.cell_fields["still"], fibre[:len(new.cells)])
+    with pytest.raises(ductile.InputError, match="turned: expected names"):
+        mesh.move(u, fields={"fibre": fibre}, turned=["fiber"])
+
+
+@pytest.fixture(scope="module")
+def example():
     pytest.importorskip("scipy")
     path = pathlib.Path(__file__).parent.parent / "examples" / "turning_body.py"
     spec = importlib.util.spec_from_file_location("turning", path)
-    example = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(example)
-    mesh, heat = example.main(6, tmp_path / "heat.svg")  # a quarter
-    assert mesh.check() == [] and (tmp_path / "heat.svg").exists()
-    body = mesh.points[np.unique(mesh.cells[mesh.refs == 3])]
-    assert np.ptp(body[:, 1]) > 2 * np.ptp(body[:, 0])  # it stands
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_example_turns_its_body(example, tmp_path, capsys):
+    mesh, velocity = example.main(6, str(tmp_path / "flow"), n=20, dt=0.25)
+    assert mesh.check() == [] and (tmp_path / "flow_1.svg").exists()
+    body = mesh.points[np.unique(mesh.cells[mesh.refs == 3])] - example.CENTRE
+    angle = example.TURN * 6 * 0.25
+    long = body @ [np.cos(angle), np.sin(angle)]
+    assert abs(np.ptp(long) / (2 * example.AXES[0]) - 1) < 0.02  # it lies along the turned axis
+    # What comes in on the left goes out on the right.
+    out = np.flatnonzero(mesh.points[:, 0] > example.LENGTH - 1e-9)
+    out = out[np.argsort(mesh.points[out, 1])]
+    y, speed = mesh.points[out, 1], velocity[out, 0]
+    flux = (np.diff(y) * (speed[1:] + speed[:-1]) / 2).sum()
+    assert abs(flux / example.HEIGHT - 1) < 0.02
     lines = capsys.readouterr().out.splitlines()
-    totals = [float(line.split("heat ")[1]) for line in lines]
-    assert len(totals) == 6 and max(totals) - min(totals) < 1e-6
-    assert all(float(line.split("quality ")[1].split(",")[0]) > 0.2 for line in lines)
+    assert len(lines) == 6 and np.abs(velocity).max() < 4
+    assert all(float(line.split("quality ")[1].split(",")[0]) > 0.1 for line in lines)
+
+
+def test_the_flow_of_the_example_stays_uniform_without_a_body(example, monkeypatch):
+    """However the mesh moves."""
+    mesh = disc_in_square(16)
+    monkeypatch.setattr(example, "LENGTH", 1)
+    monkeypatch.setattr(example, "HEIGHT", 1)
+    mesh_velocity = np.random.default_rng(2).normal(size=mesh.points.shape)
+    uniform = np.tile([1.0, 0.0], (len(mesh.points), 1))
+    fluid = ductile.Mesh(mesh.points, mesh.cells, refs=np.where(mesh.refs == 3, 2, mesh.refs))
+    velocity, _ = example.flow(fluid, uniform, mesh_velocity, 0.1)
+    np.testing.assert_allclose(velocity, uniform, atol=1e-9)

@@ -32,12 +32,14 @@ struct MoveOptions {
   /// when adaptation made it, if that is less. 0: 0.15 in 2D, 0.08 in 3D
   double keep_above = 0;
   bool remeshes = true;   ///< false: only moves vertices, as far as that goes
+  bool insert = true;     ///< false: adaptations swap and smooth, but neither split nor collapse
   int most_steps = 1000;  ///< after which move() gives up
   /// Returns the mesh of the place where the motion had to stop, see MoveReport::stopped. False:
   /// throws Error.
   bool keep_partial = false;
 
-  /// One symmetric tensor at each vertex: the sizes to adapt to. Vertices take them along. Null:
+  /// One symmetric tensor at each vertex: the sizes to adapt to. Vertices take them along: tensors
+  /// turn with the mesh, so that thin elements stay along the body, and sizes do not change. Null:
   /// those that the mesh has, alike in all directions, see implied_metric()
   const AnyField* metric = nullptr;
   double smallest_size = 0, largest_size = 0, gradation = 0;  ///< see AdaptOptions
@@ -47,6 +49,9 @@ struct MoveOptions {
   std::span<const NamedField> fields = {};
   /// How: one entry for all fields, or one for each.
   std::vector<Carrying> carrying = {Carrying::by_value};
+  /// Names of the fields of vectors or tensors that turn with the mesh, such as directions of
+  /// fibres. The components of all others are in the axes of space, as those of a velocity are.
+  std::vector<std::string> turned = {};
 };
 
 /// Statistics of a run of move().
@@ -65,6 +70,9 @@ struct MovedMesh {
   AnyMesh mesh;
   AnyField metric;  ///< one symmetric field
   std::vector<NamedField> fields;
+  /// Where the entities come from in the input. A vertex that adaptations have made or moved has the
+  /// place of the input that would be where it is now, by interpolation in each adaptation.
+  Origins origins;
   MoveReport report;
 };
 
