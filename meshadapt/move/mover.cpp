@@ -37,10 +37,10 @@ struct Steering {
   static constexpr int tries = 2;  // to adapt where the way is blocked, the second wider
 };
 template <int Dim>
-constexpr int layers_around = Dim == 2 ? 4 : 3;  // that are adapted around bad elements
+constexpr int layers_around = Dim == 2 ? 2 : 3;  // that are adapted around bad elements
 /// Strained elements are below this times remesh_below.
 template <int Dim>
-constexpr double strained = Dim == 2 ? 2 : 1.25;
+constexpr double strained = Dim == 2 ? 1.5 : 1.25;
 
 template <int Dim>
 MovingMesh<Dim> moving_mesh(const Executor& executor, const FixedMesh<Dim>& topology, AnyMesh mesh,
@@ -110,7 +110,7 @@ Mover<Dim>::Mover(const Executor& executor, AnyMesh mesh, const AnyField& displa
     : executor_(executor),
       options_(options),
       remesh_below_(chosen(options.remesh_below, 0.35, 0.2, Dim)),
-      keep_above_(chosen(options.keep_above, 0.15, 0.08, Dim)),
+      keep_above_(chosen(options.keep_above, 0.1, 0.08, Dim)),
       topology_(make_fixed_mesh<Dim>(executor, mesh)),
       paths_(executor, mesh, topology_, displacements<Dim>(executor, mesh, displacement), options),
       cargo_(executor, mesh, options) {

@@ -221,7 +221,7 @@ TYPED_TEST(MoveAlong, OriginsAreKept) {
         for (const VertexId v : now.vertices[i]) from.push_back(origins.vertex[v]);
         EXPECT_TRUE(std::ranges::is_permutation(from, before.vertices[origin_of[i]]));
       }
-      EXPECT_GT(kept, before.size() / 4);
+      EXPECT_GT(kept, before.size() / 10);
       if (way < 0.3) {
         EXPECT_EQ(kept, before.size());
       }

@@ -309,7 +309,7 @@ TYPED_TEST(MoveIn, WhatMayNotChangeDoesNot) {
   for (int trial = 0; trial < 6; ++trial) {
     const AnyMesh mesh = box_with_ball<Dim>(executor, uniform(random, 0.35, 0.4),
                                             uniform(random, 0.12, 0.2), Dim == 2 ? 16 : 8);
-    const Vector<Dim> way = along_x<Dim>(uniform(random, 0.1, 0.3), uniform(random, -0.1, 0.1));
+    const Vector<Dim> way = along_x<Dim>(uniform(random, 0.25, 0.35), uniform(random, -0.1, 0.1));
     const auto displacement =
         displacement_of<Dim>(mesh, [&](const Vector<Dim>& p) { return p + way; });
     const MovedMesh still =
@@ -318,15 +318,15 @@ TYPED_TEST(MoveIn, WhatMayNotChangeDoesNot) {
     EXPECT_EQ(test::joined(check_mesh(executor, still.mesh)), "");
     EXPECT_EQ(elements_in<Dim>(still.mesh), elements_in<Dim>(mesh));
     EXPECT_EQ(facets_in<Dim>(still.mesh), facets_in<Dim>(mesh));
-    const MovedMesh swaps =
-        move(executor, mesh, displacement, {.insert = false, .keep_partial = true});
+    const MovedMesh swaps = move(executor, mesh, displacement,
+                                 {.remesh_below = 0.5, .insert = false, .keep_partial = true});
     EXPECT_EQ(test::joined(check_mesh(executor, swaps.mesh)), "");
     EXPECT_EQ(swaps.mesh.vertex_count(), mesh.vertex_count());
     EXPECT_EQ(facets_in<Dim>(swaps.mesh).size(), facets_in<Dim>(mesh).size());
     EXPECT_GE(swaps.report.share, still.report.share);
     swapped += std::ranges::count(swaps.origins.element, none) > 0;
   }
-  EXPECT_GT(swapped, 3);
+  EXPECT_GT(swapped, 2);
 }
 
 /// Bodies that pass close to required elements leave these where they are.

@@ -29,7 +29,7 @@ struct MoveOptions {
   /// the metric. 0: 0.35 in 2D, 0.2 in 3D
   double remesh_below = 0;
   /// A step ends before an element gets worse than this, or than 0.6 times its quality at first, or
-  /// when adaptation made it, if that is less. 0: 0.15 in 2D, 0.08 in 3D
+  /// when adaptation made it, if that is less. 0: 0.1 in 2D, 0.08 in 3D
   double keep_above = 0;
   bool remeshes = true;   ///< false: only moves vertices, as far as that goes
   bool insert = true;     ///< false: adaptations swap and smooth, but neither split nor collapse
