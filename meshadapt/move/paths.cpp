@@ -25,22 +25,22 @@ constexpr double reach = 1, reach_in_edges = 4;
 /// A displacement is rigid if it differs from a rigid motion by less than this share of itself.
 constexpr double rigid_tolerance = 1e-3;
 
-template <std::size_t N, class Chosen>
-void choose(const std::vector<std::array<std::uint32_t, N>>& cells,
-            const std::vector<std::int32_t>& reference_of, std::int32_t reference,
-            std::vector<std::uint8_t>& chosen, Chosen&& also) {
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (reference_of[i] == reference) {
-      for (const std::uint32_t v : cells[i]) chosen[v] = 1;
-      also(i);
+/// Marks the vertices of cells with these references, and the cells in `in`. Throws unless each
+/// reference has a cell.
+template <int N>
+void choose(std::vector<std::uint8_t>& chosen, std::vector<std::uint8_t>& in, const Cells<N>& cells,
+            const std::vector<std::int32_t>& references, const std::string& expected) {
+  for (const std::int32_t reference : references) {
+    bool found = false;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells.reference[i] != reference) continue;
+      found = true;
+      in[i] = 1;
+      for (const VertexId v : cells.vertices[i]) chosen[v] = 1;
     }
-}
-
-void expect_some(bool found, const std::string& option, const std::string& what,
-                 std::int32_t reference) {
-  if (!found)
-    throw InputError(option + ": expected references of " + what + ", found " +
-                     std::to_string(reference) + ", which none has");
+    if (!found)
+      throw InputError(expected + ", found " + std::to_string(reference) + ", which none has");
+  }
 }
 
 }  // namespace
@@ -68,23 +68,11 @@ Paths<Dim>::Paths(const Executor& executor, const AnyMesh& mesh, const FixedMesh
 template <int Dim>
 std::vector<std::uint8_t> Paths<Dim>::choose_named(const AnyMesh& mesh,
                                                    const MoveOptions& options) {
-  std::vector<std::uint8_t> chosen(mesh.vertex_count(), 0);
-  const auto& elements = elements_in<Dim>(mesh);
-  for (const std::int32_t reference : options.bodies) {
-    bool found = false;
-    choose(elements.vertices, elements.reference, reference, chosen, [&](std::size_t e) {
-      found = true;
-      in_body_[e] = 1;
-    });
-    expect_some(found, "bodies", "elements", reference);
-  }
-  const auto& facets = facets_in<Dim>(mesh);
-  for (const std::int32_t reference : options.boundaries) {
-    bool found = false;
-    choose(facets.vertices, facets.reference, reference, chosen,
-           [&](std::size_t) { found = true; });
-    expect_some(found, "boundaries", Dim == 2 ? "edges" : "triangles", reference);
-  }
+  std::vector<std::uint8_t> chosen(mesh.vertex_count(), 0), facets(facets_in<Dim>(mesh).size());
+  choose(chosen, in_body_, elements_in<Dim>(mesh), options.bodies,
+         "bodies: expected references of elements");
+  choose(chosen, facets, facets_in<Dim>(mesh), options.boundaries,
+         std::string("boundaries: expected references of ") + (Dim == 2 ? "edges" : "triangles"));
   return chosen;
 }
 

@@ -62,11 +62,10 @@ py::tuple moved(const AnyMesh& mesh, const Given<double>& displacement, const Mo
     return meshadapt::move(executor, mesh, vectors, options);
   });
   const Shape shape{signed_size(result.mesh.vertex_count()), signed_size(stride_of(result.metric))};
-  return py::make_tuple(std::make_shared<AnyMesh>(std::move(result.mesh)),
-                        take(std::move(result.metric.values), shape),
-                        taken(result.fields, mesh.dimension),
-                        arrays_of(std::move(result.origins), mesh.dimension),
-                        std::move(result.report));
+  return py::make_tuple(
+      std::make_shared<AnyMesh>(std::move(result.mesh)),
+      take(std::move(result.metric.values), shape), taken(result.fields, mesh.dimension),
+      arrays_of(std::move(result.origins), mesh.dimension), std::move(result.report));
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ struct MovedMesh {
   AnyMesh mesh;
   AnyField metric;  ///< one symmetric field
   std::vector<NamedField> fields;
-  /// Where the entities come from in the input. A vertex that adaptations have made or moved has the
-  /// place of the input that would be where it is now, by interpolation in each adaptation.
+  /// Where the entities come from in the input. A vertex that adaptations have made or moved has
+  /// the place of the input that would be where it is now, by interpolation in each adaptation.
   Origins origins;
   MoveReport report;
 };
