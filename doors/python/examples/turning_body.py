@@ -14,7 +14,7 @@ import scipy.sparse.linalg
 
 import ductile
 
-BODY, LENGTH, HEIGHT, CENTRE, AXES, TURN, VISCOSITY = 3, 4, 2, np.array([1.2, 1.0]), (0.4, 0.1), np.pi / 6, 2e-3
+BODY, LENGTH, HEIGHT, CENTRE, AXES, TURN, VISCOSITY = 3, 4, 2, np.array([1.2, 1.0]), (0.4, 0.14), np.pi / 6, 2e-3
 
 
 def turned(points, angle):
@@ -61,7 +61,7 @@ def flow(mesh, old, mesh_velocity, dt):
 def main(steps=42, name=None, n=40, dt=0.15):
     box = ductile.box((LENGTH, HEIGHT), (2 * n, n))
     distance = AXES[1] * (np.linalg.norm((box.points - CENTRE) / AXES, axis=1) - 1)
-    mesh = box.cut(distance, minus=BODY).remesh(HEIGHT / n, hausd=0.002, hgrad=1.3)
+    mesh = box.cut(distance, minus=BODY).remesh(HEIGHT / n, hausd=0.0005, hgrad=1.3)
     velocity = np.tile([1.0, 0.0], (len(mesh.points), 1))
     for step in range(1, steps + 1):
         mesh = mesh.move(turned(mesh.points, TURN * dt) - mesh.points, bodies=[BODY], metric=mesh.metric,
