@@ -225,7 +225,11 @@ std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& block
   });
   parallel_for(executor_, next_site_of_.size(), [&](std::size_t v) {
     Metric<Dim>& metric = next_site_of_[v].metric;
-    if (!is_isotropic(metric)) metric = rotation_at(static_cast<VertexId>(v), share).turned(metric);
+    if (is_isotropic(metric)) return;
+    const auto vertex = static_cast<VertexId>(v);
+    const auto of_body = rotation_of_body(vertex, share);
+    metric = of_body ? of_body->turned(metric)
+                     : deformed<Dim>(metric, deformation_of(topology_.elements_of(vertex)));
   });
   next_quality_of_ = mesh_.quality_of;
   return runtime::parallel_reduce(
@@ -244,29 +248,40 @@ std::size_t Mover<Dim>::attempt(double share, const Field& move_of, Marks& block
       std::plus<>());
 }
 
+/// The sum over elements of their deformation by the last attempt times their volume.
 template <int Dim>
-Rotation<Dim> Mover<Dim>::rotation_of(std::span<const ElementId> elements) const {
-  return mean_rotation(
-      topology_, elements, [&](VertexId v) { return mesh_.site_of[v].position; },
-      [&](VertexId v) { return next_site_of_[v].position; });
+LinearMap<Dim> Mover<Dim>::deformation_of(std::span<const ElementId> elements) const {
+  LinearMap<Dim> sum{};
+  for (const ElementId e : elements) {
+    std::array<Vector<Dim>, Dim + 1> before, after;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      before[i] = mesh_.site_of[topology_.corners_of[e][i]].position;
+      after[i] = next_site_of_[topology_.corners_of[e][i]].position;
+    }
+    const LinearMap<Dim> map = deformation<Dim>(before, after);
+    for (std::size_t i = 0; i < Dim; ++i) sum[i] += topology_.volume_of[e] * map[i];
+  }
+  return sum;
 }
 
-/// The rotation of the rigid body that a vertex belongs to, or else of the elements around it.
+/// The rotation of the rigid body that a vertex belongs to.
 template <int Dim>
-Rotation<Dim> Mover<Dim>::rotation_at(VertexId v, double share) const {
+std::optional<Rotation<Dim>> Mover<Dim>::rotation_of_body(VertexId v, double share) const {
   const std::uint32_t path = mesh_.path_of[v];
-  const auto of_body = path == none ? std::nullopt : paths_.rotation(path, share_, share);
-  return of_body ? *of_body : rotation_of(topology_.elements_of(v));
+  return path == none ? std::nullopt : paths_.rotation(path, share_, share);
 }
 
 template <int Dim>
 void Mover<Dim>::turn_fields(double share) {
   std::vector<Rotation<Dim>> at_vertex(mesh_.site_of.size()), of_element(mesh_.is_held.size());
-  parallel_for(executor_, at_vertex.size(),
-               [&](std::size_t v) { at_vertex[v] = rotation_at(static_cast<VertexId>(v), share); });
-  parallel_for(executor_, of_element.size(), [&](std::size_t e) {
-    const auto element = static_cast<ElementId>(e);
-    of_element[e] = rotation_of({&element, 1});
+  parallel_for(executor_, at_vertex.size(), [&](std::size_t i) {
+    const auto v = static_cast<VertexId>(i);
+    const auto of_body = rotation_of_body(v, share);
+    at_vertex[i] = of_body ? *of_body : rotation_of(deformation_of(topology_.elements_of(v)));
+  });
+  parallel_for(executor_, of_element.size(), [&](std::size_t i) {
+    const auto e = static_cast<ElementId>(i);
+    of_element[i] = rotation_of(deformation_of({&e, 1}));
   });
   cargo_.turn(NamedField::Place::vertices, at_vertex);
   cargo_.turn(NamedField::Place::elements, of_element);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,8 +42,8 @@ class Mover {
   /// number.
   std::size_t attempt(double share, const Field& move_of, Marks& blocking);
   void go_to(double share, const Field& move_of);
-  Rotation<Dim> rotation_at(VertexId v, double share) const;
-  Rotation<Dim> rotation_of(std::span<const ElementId> elements) const;
+  LinearMap<Dim> deformation_of(std::span<const ElementId> elements) const;
+  std::optional<Rotation<Dim>> rotation_of_body(VertexId v, double share) const;
   void turn_fields(double share);
 
   void mark_bad(Marks& marks) const;

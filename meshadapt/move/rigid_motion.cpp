@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <numeric>
+
+#include "ductile/meshadapt/fixed_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -42,6 +46,20 @@ Vector<Dim> unit_vector(int axis) {
   return unit;
 }
 
+/// F M F^T, where `map` is F.
+template <int Dim>
+Metric<Dim> pushed(const Metric<Dim>& m, const LinearMap<Dim>& map) {
+  Metric<Dim> result;
+  std::size_t component = 0;
+  for (int column = 0; column < Dim; ++column)
+    for (int row = 0; row <= column; ++row, ++component)
+      for (std::size_t k = 0; k < Dim; ++k)
+        for (std::size_t l = 0; l < Dim; ++l)
+          result.m[component] +=
+              map[k][row] * m(static_cast<int>(k), static_cast<int>(l)) * map[l][column];
+  return result;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -51,18 +69,22 @@ Vector<Dim> Rotation<Dim>::turned(const Vector<Dim>& d) const {
 
 template <int Dim>
 Metric<Dim> Rotation<Dim>::turned(const Metric<Dim>& m) const {
-  LinearMap<Dim> back;  // unit vectors before the rotation
-  const Rotation inverse{-angle, axis};
-  for (int i = 0; i < Dim; ++i)
-    back[static_cast<std::size_t>(i)] = inverse.turned(unit_vector<Dim>(i));
-  Metric<Dim> result;
-  std::size_t component = 0;
-  for (std::size_t column = 0; column < Dim; ++column)
-    for (std::size_t row = 0; row <= column; ++row, ++component)
-      for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j < Dim; ++j)
-          result.m[component] += back[row][i] * m(i, j) * back[column][j];
-  return result;
+  if (is_isotropic(m) || angle == 0) return m;
+  LinearMap<Dim> map;
+  for (int i = 0; i < Dim; ++i) map[static_cast<std::size_t>(i)] = turned(unit_vector<Dim>(i));
+  return pushed<Dim>(m, map);
+}
+
+template <int Dim>
+Metric<Dim> deformed(const Metric<Dim>& m, const LinearMap<Dim>& map) {
+  const PrincipalAxes<Dim> now = principal_axes(pushed<Dim>(inverse(m), map));
+  PrincipalAxes<Dim> result = principal_axes(m);
+  std::array<std::size_t, Dim> order;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return now.value[i]; });
+  std::ranges::sort(result.value, std::greater<>());
+  for (std::size_t i = 0; i < Dim; ++i) result.vector[i] = now.vector[order[i]];
+  return compose(result);
 }
 
 Rotation<2> rotation_of(const LinearMap<2>& map) {
@@ -125,6 +147,8 @@ RigidMotion<Dim> closest_motion(const std::vector<Vector<Dim>>& from,
 
 template struct Rotation<2>;
 template struct Rotation<3>;
+template Metric<2> deformed<2>(const Metric<2>&, const LinearMap<2>&);
+template Metric<3> deformed<3>(const Metric<3>&, const LinearMap<3>&);
 template LinearMap<2> deformation<2>(const std::array<Vector<2>, 3>&,
                                      const std::array<Vector<2>, 3>&);
 template LinearMap<3> deformation<3>(const std::array<Vector<3>, 4>&,

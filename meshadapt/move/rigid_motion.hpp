@@ -3,11 +3,8 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <span>
 #include <vector>
 
-#include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
@@ -41,27 +38,15 @@ using LinearMap = std::array<Vector<Dim>, Dim>;
 Rotation<2> rotation_of(const LinearMap<2>& map);
 Rotation<3> rotation_of(const LinearMap<3>& map);
 
+/// The metric of a place that is deformed by `map`, F: sizes stay, and their directions become
+/// those of F^-T M F^-1, so that thin elements stay along what they were along.
+template <int Dim>
+Metric<Dim> deformed(const Metric<Dim>& m, const LinearMap<Dim>& map);
+
 /// The deformation gradient of an element whose corners move.
 template <int Dim>
 LinearMap<Dim> deformation(const std::array<Vector<Dim>, Dim + 1>& from,
                            const std::array<Vector<Dim>, Dim + 1>& to);
-
-/// The rotation of the mean deformation of some elements whose vertices move.
-template <int Dim>
-Rotation<Dim> mean_rotation(const FixedMesh<Dim>& mesh, std::span<const ElementId> elements,
-                            auto&& from, auto&& to) {
-  LinearMap<Dim> sum{};
-  for (const ElementId e : elements) {
-    std::array<Vector<Dim>, Dim + 1> before, after;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      before[i] = from(mesh.corners_of[e][i]);
-      after[i] = to(mesh.corners_of[e][i]);
-    }
-    const LinearMap<Dim> map = deformation<Dim>(before, after);
-    for (std::size_t i = 0; i < Dim; ++i) sum[i] += mesh.volume_of[e] * map[i];
-  }
-  return rotation_of(sum);
-}
 
 /// A rotation about an axis through `pivot`, which moves by `shift`.
 template <int Dim>
@@ -83,6 +68,8 @@ RigidMotion<Dim> closest_motion(const std::vector<Vector<Dim>>& from,
 
 extern template struct Rotation<2>;
 extern template struct Rotation<3>;
+extern template Metric<2> deformed<2>(const Metric<2>&, const LinearMap<2>&);
+extern template Metric<3> deformed<3>(const Metric<3>&, const LinearMap<3>&);
 extern template LinearMap<2> deformation<2>(const std::array<Vector<2>, 3>&,
                                             const std::array<Vector<2>, 3>&);
 extern template LinearMap<3> deformation<3>(const std::array<Vector<3>, 4>&,
