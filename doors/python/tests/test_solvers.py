@@ -61,7 +61,7 @@ def test_dolfinx(tmp_path):
 def test_freefem(script, tmp_path):
     if shutil.which("FreeFem++") is None:
         pytest.skip("FreeFEM is not installed (freefem++)")
-    rows, said = run(tmp_path, "FreeFem++", "-nw", "-v", 0, EXAMPLES / script, "-most", 8000)
+    rows, said = run(tmp_path, "FreeFem++", "-nw", "-v", 0, EXAMPLES / script, "-most", 11000)
     assert gain(rows) > 3
     measures = [float(line.split(": ")[1]) for line in said.splitlines() if line.startswith(("area", "length"))]
     assert measures == pytest.approx([1] * len(measures)) and len(measures) in (4, 6)
@@ -71,7 +71,7 @@ def test_freefem(script, tmp_path):
 def test_openfoam(tmp_path):
     if shutil.which("gmshToFoam") is None:
         pytest.skip("OpenFOAM is not installed (openfoam)")
-    rows, _ = run(tmp_path, sys.executable, EXAMPLES / "openfoam_pipe.py", 4000, "out.vtu")
+    rows, _ = run(tmp_path, sys.executable, EXAMPLES / "openfoam_pipe.py", 4500, "out.vtu")
     assert gain(rows) > 3
     mesh = ductile.read(tmp_path / "out.vtu")
     assert mesh.check() == []
