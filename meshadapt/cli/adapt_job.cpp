@@ -22,15 +22,6 @@ namespace fs = std::filesystem;
 using meshadapt::AdaptOptions;
 using Job = AdaptJob;
 
-fs::path only_mesh(const Arguments& arguments) {
-  std::vector<std::string> meshes = arguments.operands();
-  if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
-  if (meshes.size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()) +
-                     (meshes.size() == 2 ? "; -o says where the adapted one goes" : ""));
-  return input_of(meshes[0]);
-}
-
 /// Sets where the mesh goes and, unless that is standard output, the metric beside it.
 void set_output(Job& job, const Arguments& arguments, const std::optional<fs::path>& given) {
   const auto out = arguments.text("-o");
@@ -86,7 +77,7 @@ void set_sizes(Job& job, const Arguments& arguments) {
 }
 
 void set_files(Job& job, const Arguments& arguments, const std::optional<fs::path>& output) {
-  job.input = only_mesh(arguments);
+  job.input = only_mesh(arguments, "; -o says where the adapted one goes");
   set_output(job, arguments, output);
   job.json = json_output(arguments);
   if (job.json == standard_output && is_standard_output(job.output))

@@ -4,21 +4,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 #include "ductile/meshadapt/adapt_options.hpp"
 #include "files.hpp"
 
 namespace ductile::cli {
 
-/// How far a run has come, from 0 to 1, if an iteration made `most` changes and the last one
-/// `changes`. Iterations make fewer and fewer, by a factor, so it goes by the logarithm.
-inline double share_done(std::size_t changes, std::size_t most) {
-  const auto log = [](std::size_t count) { return std::log1p(static_cast<double>(count)); };
-  return most == 0 ? 0 : 1 - log(changes) / log(most);
-}
-
+/// The bar goes by how far the number of changes between two steps of smoothing has fallen below
+/// the most so far, and never back.
 class ProgressBar {
  public:
   explicit ProgressBar(bool shown) : shown_(shown) {}
@@ -30,13 +26,7 @@ class ProgressBar {
 
   /// Shows the bar, the elapsed time and the step, at most twenty times a second.
   void show(const meshadapt::AdaptProgress& progress) {
-    if (progress.iteration != iteration_) {
-      iteration_ = progress.iteration;
-      most_ = std::max(most_, changes_);
-      share_ = std::max(share_, share_done(changes_, most_));
-      changes_ = 0;
-    }
-    changes_ += progress.changes;
+    share_ = share_after(progress);
     const Clock::time_point now = Clock::now();
     if (!shown_ || now - last_ < std::chrono::milliseconds(50)) return;
     last_ = now;
@@ -49,14 +39,25 @@ class ProgressBar {
     std::fflush(stderr);
   }
 
+  /// How much of the bar is full after this step, from 0 to 1.
+  double share_after(const meshadapt::AdaptProgress& progress) {
+    if (progress.step != std::string_view("smooth")) {
+      changes_ += progress.changes;
+      return share_;
+    }
+    most_ = std::max(most_, changes_);
+    const std::size_t changes = std::exchange(changes_, 0);
+    if (most_ == 0) return share_;
+    return std::max(share_, 1 - static_cast<double>(changes) / static_cast<double>(most_));
+  }
+
  private:
   using Clock = std::chrono::steady_clock;
 
   bool shown_;
   Clock::time_point begin_ = Clock::now(), last_{};
-  int iteration_ = 0;
-  std::size_t changes_ = 0, most_ = 0;  ///< in this iteration, in any before
-  double share_ = 0;                    ///< the bar never goes back
+  std::size_t changes_ = 0, most_ = 0;
+  double share_ = 0;
 };
 
 }  // namespace ductile::cli

@@ -61,11 +61,21 @@ TEST(Errors, SayWhatIsWrongInOneLineAndWhatToDoInAnother) {
   }
 }
 
-TEST(ProgressBar, GoesByTheLogarithmOfTheChanges) {
-  EXPECT_EQ(share_done(0, 0), 0);
-  EXPECT_EQ(share_done(1000, 1000), 0);
-  EXPECT_EQ(share_done(0, 1000), 1);
-  EXPECT_NEAR(share_done(31, 1023), 0.5, 1e-12);
+TEST(ProgressBar, GoesByTheChangesBetweenStepsOfSmoothingAndNeverBack) {
+  ProgressBar bar(false);
+  const auto share_after = [&](const char* step, std::size_t changes) {
+    bar.show({step, 1, changes});
+    return bar.share_after({"none", 1, 0});
+  };
+  EXPECT_EQ(share_after("smooth", 7), 0);
+  EXPECT_EQ(share_after("refine", 60), 0);
+  EXPECT_EQ(share_after("swap", 40), 0);
+  EXPECT_EQ(share_after("smooth", 1000), 0);
+  share_after("swap", 20);
+  EXPECT_DOUBLE_EQ(share_after("smooth", 900), 0.8);
+  share_after("coarsen", 90);
+  EXPECT_DOUBLE_EQ(share_after("smooth", 0), 0.8);
+  EXPECT_EQ(share_after("smooth", 0), 1);
 }
 
 TEST(ProgressBar, IsShownOnATerminalOnly) {

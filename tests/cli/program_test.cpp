@@ -264,14 +264,16 @@ TEST(Convert, RefusesWhatItWouldIgnore) {
   EXPECT_FALSE(folder.has("a.meshb") || folder.has("a.solb") || folder.has("a.vtu"));
 }
 
-TEST(Convert, SaysHowManyNumbersItRounds) {
+TEST(Convert, RoundsNoNumbers) {
   const Folder folder;
-  folder.write("a.sol",
-               "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 3\n1 1\n0.5 0.1 0.7\nEnd\n");
-  const Outcome rounded = folder.run("convert a.sol a.solb --version-of-file 1");
-  EXPECT_EQ(rounded.status, 0);
-  EXPECT_TRUE(contains(rounded.err, "2 numbers were rounded")) << rounded.err;
-  EXPECT_EQ(folder.run("convert a.sol b.solb").err, "");
+  folder.add_example("waves2d");
+  for (const char* words : {"waves2d.sol a.solb", "waves2d.mesh a.meshb"}) {
+    const Outcome refused = folder.run("convert " + std::string(words) + " --version-of-file 1");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(contains(refused.err, "version 1 hold 7 digits")) << refused.err;
+    EXPECT_EQ(folder.run("convert " + std::string(words) + " --version-of-file 2").err, "");
+  }
+  EXPECT_EQ(folder.run("convert waves2d.sol b.sol --version-of-file 1").status, 0);
 }
 
 TEST(Program, WritesToAStandardOutputThatIsAFileBesideWhatItSays) {
