@@ -186,11 +186,10 @@ void write_outputs(const Job& job, const AdaptOutput& output, meshadapt::Warning
 
 namespace {
 
-/// How far curved boundaries are from where they were. The mesh is there already, so that nothing
-/// fails if memory runs out here.
+/// How far curved boundaries are from where they were. If memory runs out here, that is not told,
+/// because the mesh itself is there.
 std::optional<double> distance_from(const Executor& executor, const AnyMesh& before,
                                     const AnyMesh& after, const MakeMeshOptions& make) {
-  if (make.hausdorff_tolerance == 0 || make.lock_boundary) return std::nullopt;
   try {
     if (make.geometry) return distance_to(executor, after, *make.geometry);
     return distance_to(executor, after,
@@ -202,6 +201,27 @@ std::optional<double> distance_from(const Executor& executor, const AnyMesh& bef
   } catch (const std::bad_alloc&) {
     return std::nullopt;
   }
+}
+
+AdaptSummary summary_of(const Job& job, const AdaptInput& input,
+                        const meshadapt::AdjacentMesh& before, const AdaptedMesh& adapted,
+                        const meshadapt::AdjacentMesh& after) {
+  const MakeMeshOptions& make = job.adapt.make;
+  const double tolerance = make.lock_boundary ? 0 : make.hausdorff_tolerance;
+  const bool tells = job.json || job.verbosity > 0;
+  AdaptSummary summary =
+      summarise(before, input.metric, adapted, after,
+                {.before = job.json || job.verbosity > 1,
+                 .after = tells,
+                 .expects_lengths = job.adapt.insert,
+                 .keeps_surface = make.hausdorff_tolerance == 0 && !make.lock_boundary,
+                 .hausdorff_tolerance = tolerance,
+                 .in_force = input.in_force});
+  if (!tells) return summary;
+  summary.ridges = ridge_count(adapted.mesh, make.ridge_angle);
+  if (tolerance > 0)
+    summary.distance = distance_from(after.executor(), before.mesh(), adapted.mesh, make);
+  return summary;
 }
 
 int work(const Executor& executor, Job job) {
@@ -219,18 +239,7 @@ int work(const Executor& executor, Job job) {
   adapted.mesh.name = job.output.string();
   const auto carried =
       job.fields.carry(executor, input.mesh_of_fields(), input.fields, adapted.mesh);
-  AdaptSummary summary = summarise(
-      before, input.metric, adapted, after,
-      {.before = job.json || job.verbosity > 1,
-       .after = job.json || job.verbosity > 0,
-       .expects_lengths = job.adapt.insert,
-       .keeps_surface = job.adapt.make.hausdorff_tolerance == 0 && !job.adapt.make.lock_boundary,
-       .hausdorff_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.hausdorff_tolerance,
-       .in_force = input.in_force});
-  if (job.json || job.verbosity > 0) {
-    summary.ridges = ridge_count(adapted.mesh, job.adapt.make.ridge_angle);
-    summary.distance = distance_from(executor, mesh, adapted.mesh, job.adapt.make);
-  }
+  const AdaptSummary summary = summary_of(job, input, before, adapted, after);
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, input, summary) : std::string();
   write_outputs(
