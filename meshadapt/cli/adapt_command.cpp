@@ -251,7 +251,7 @@ int work(const Executor& executor, Job job) {
   const bool taken = is_standard_output(job.output) || job.json == standard_output;
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
   if (!said.empty())
-    std::fprintf(taken ? stderr : stdout, "%s, %.2f s in all\n", said.c_str(), passed.count());
+    std::fprintf(taken ? stderr : stdout, "%s (%.2f s in all)\n", said.c_str(), passed.count());
   return done;
 }
 

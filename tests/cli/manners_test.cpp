@@ -153,7 +153,7 @@ TEST(AdaptCommand, SumsUpItsBoundary) {
   folder.add_example("waves3d");
   const Outcome flat = folder.run("adapt waves3d.mesh -hsiz 0.25 -hausd 0.01 --json r.json");
   EXPECT_TRUE(contains(flat.out, " edges of ridges\n")) << flat.out;
-  EXPECT_TRUE(contains(flat.out, " s in all\n")) << flat.out;
+  EXPECT_TRUE(contains(flat.out, " s in all)\n")) << flat.out;
   EXPECT_TRUE(contains(folder.read("r.json"), "\"distance\": null")) << folder.read("r.json");
   const Outcome round = folder.run("adapt '" DUCTILE_EXAMPLES
                                    "/bracket.msh' -hsiz 8 -hausd 0.05 -hgrad 1.5 -o b.mesh");
