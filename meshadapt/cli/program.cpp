@@ -56,7 +56,7 @@ void print_help(const Program& program, const Command& command) {
   if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
   std::printf("\nOptions (one or two dashes mean the same):\n%s",
               help_lines(command.options).c_str());
-  std::printf("  %-22s %s\n", "-h, --help", "shows its options");
+  std::printf("  %-22s %s\n", "-h, --help", "shows this help");
 }
 
 /// Messages say what is wrong and then, behind a semicolon, what to do. This adds to the latter.
