@@ -69,6 +69,7 @@ constexpr std::array<Named, 25> all_options{{
      [](Options& o, const Text& n, double x) { o.adapt.make.lock_boundary = flag(n, x); }},
     {"thorough", [](Options& o, const Text& n, double x) { o.adapt.thorough = flag(n, x); }},
     {"ls", [](Options& o, const Text&, double x) { o.cut.level = x; }},
+    {"lssurf", [](Options& o, const Text& n, double x) { o.cut.boundary_only = flag(n, x); }},
     {"rmc", [](Options& o, const Text&, double x) { o.cut.least_component = x; }},
     {"isoref", [](Options& o, const Text& n, double x) { o.cut.interface = reference(n, x); }},
     {"minus", [](Options& o, const Text& n, double x) { o.cut.minus = reference(n, x); }},

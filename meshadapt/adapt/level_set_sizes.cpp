@@ -135,32 +135,33 @@ class Resolution {
     return coordinates;
   }
 
-  /// Infinite where the edge may be as long as it is. An edge between ends of different signs is
-  /// divided by how far the function is from linear. One between ends of the same sign is halved if
-  /// the function has the other sign in the middle, or has a kink and, falling as steeply as around
-  /// there, could have it in one of the halves.
+  /// Infinite where the edge may be as long as it is: where the function is linear within the
+  /// tolerance, and where the edge has the smallest size, which it has at kinks and other singular
+  /// points. Otherwise an edge between ends of different signs is divided by how far the function
+  /// is from linear. One between ends of the same sign is halved if the function has the other sign
+  /// in the middle, or has a kink and, falling as steeply as around there, could have it in one of
+  /// the halves.
   double size_for(std::size_t edge) const {
-    constexpr double kink = 0.1;  // a bend of the function that is sharper, over the length
-    constexpr double half = 0.4;  // because edges may become longer than the metric asks for
+    constexpr double kink = 0.1;     // a bend of the function that is sharper, over the length
+    constexpr double half = 0.4;     // because edges may become longer than the metric asks for
+    constexpr double longest = 1.5;  // of edges of the smallest size
     const double infinite = std::numeric_limits<double>::infinity();
+    const double least = options_.smallest_size > 0 ? options_.smallest_size : options_.tolerance;
     const auto [from, to] = edges_[edge];
     const double a = value_of_[from], b = value_of_[to], middle = value_in_[edge];
     const double steepest = std::max(steepest_of_[from], steepest_of_[to]);
     const double length = norm(direction(edges_[edge]));
-    if (!(steepest > 0)) return infinite;
     const double off = std::abs(middle - 0.5 * (a + b)) / steepest;
-    double share = 1;
+    if (!(steepest > 0) || off <= options_.tolerance || length <= longest * least) return infinite;
+    double share = half;
     if ((a < 0) != (b < 0)) {
-      if (off > options_.tolerance)
-        share = std::max(half, 2 * half * std::sqrt(options_.tolerance / off));
-    } else if ((middle < 0) != (a < 0)) {
-      share = half;
-    } else if (off > std::max(options_.tolerance, kink * length)) {
+      share = std::max(half, 2 * half * std::sqrt(options_.tolerance / off));
+    } else if ((middle < 0) == (a < 0)) {
       const double nearer = std::min(std::abs(a), std::abs(b));
-      if (nearer + std::abs(middle) <= 0.5 * steepest * length) share = half;
+      if (off <= kink * length || nearer + std::abs(middle) > 0.5 * steepest * length)
+        return infinite;
     }
-    const double least = options_.smallest_size > 0 ? options_.smallest_size : options_.tolerance;
-    return share < 1 ? std::max(least, share * length) : infinite;
+    return std::max(least, share * length);
   }
 
   const Executor& executor_;

@@ -43,7 +43,7 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 42> own_options{{
+constexpr std::array<Option, 43> own_options{{
     {"-sol", "FIELD",
      "the metric or the sizes wanted, with -ls the level set (default: NAME.sol or .solb)"},
     {"-met", "FIELD", "the same as -sol; with -ls, the metric"},
@@ -81,6 +81,7 @@ constexpr std::array<Option, 42> own_options{{
     {"-ar", "DEG",
      "with -hausd, edges that turn by DEG degrees are ridges, which stay (default: 45)"},
     {"-ls", "[V]", "cuts the mesh first where -sol, a file or a field of MESH, is V (0)"},
+    {"-lssurf", "[V]", "the same for the triangles of the boundary alone, with references by side"},
     {"-rmc", "[X]", "with -ls, removes components with less than X of the volume (1e-5)"},
     {"-isoref", "N", "with -ls, facets where it is V get this reference (10)"},
     {"--keep-volume", "X", "with -ls, changes V so that the part below has this volume"},
