@@ -105,7 +105,7 @@ void bound_sizes_by_functions(const runtime::Executor& executor, const Mesh<Dim>
     Metric<Dim> sizes;
     std::copy_n(at[v]->sizes(point).begin(), sizes.m.size(), sizes.m.begin());
     PrincipalAxes<Dim> axes = principal_axes(sizes);
-    const double least = smallest_value(metric_of[v]);
+    const double least = std::ranges::min(principal_axes(metric_of[v]).value);
     bool binds = false;
     for (std::size_t i = 0; i < Dim; ++i) {
       const double asked = squared_length(metric_of[v], axes.vector[i]);

@@ -35,7 +35,7 @@ void expect_options(const CutOptions& options) {
         "least_component: expected a fraction of the volume, from 0 to below 1, found " +
         number(options.least_component));
   if (options.boundary_only && options.keep_volume)
-    throw InputError("keep_volume: expected none with boundary_only, which has areas, no volumes");
+    throw InputError("keep_volume: expected none where only the boundary is cut");
 }
 
 void expect_cut_values(const Executor& executor, const AnyMesh& mesh,
@@ -214,7 +214,8 @@ class Cutter {
       by = low + (i % 3 == 2 ? 0.5 : low_error / (low_error - high_error)) * (high - low);
       error = shift(made, before, by) - wanted;
     }
-    if (std::abs(error) > std::abs(before.report.minus_volume - wanted) || !is_valid(made))
+    if (by == 0 || std::abs(error) > std::abs(before.report.minus_volume - wanted) ||
+        !is_valid(made))
       made = before;
     else
       finish_shift(made, by);
@@ -271,10 +272,9 @@ class Cutter {
 /// The listed facets of tetrahedra, as a surface alone.
 AnyMesh boundary_of(const AnyMesh& mesh) {
   if (mesh.tetrahedra.size() == 0 || mesh.triangles.size() == 0)
-    throw InputError(
-        name_of(mesh) +
-        ": boundary_only: expected tetrahedra and triangles of their boundary, found " +
-        (mesh.tetrahedra.size() == 0 ? "no tetrahedra" : "no triangles"));
+    throw InputError(name_of(mesh) +
+                     ": expected tetrahedra and triangles, which alone are to be cut, found " +
+                     (mesh.tetrahedra.size() == 0 ? "no tetrahedra" : "no triangles"));
   AnyMesh boundary = mesh;
   boundary.tetrahedra = {};
   boundary.required_tetrahedra.clear();

@@ -133,7 +133,9 @@ Metric<Dim> QuadraticBlend<Dim>::chords(const Vector<Dim>& point, double distanc
   }
   PrincipalAxes<Dim> axes = principal_axes(bend);
   double most = 0;
-  for (double& value : axes.value) most = std::max(most, value = std::abs(value) / (8 * distance));
+  const double finest = 1 / (16 * distance * distance);
+  for (double& value : axes.value)
+    most = std::max(most, value = std::min(std::abs(value) / (8 * distance), finest));
   for (std::size_t i = 0; i < Dim; ++i)
     if (std::abs(dot(axes.vector[i], normal)) > least_turn) axes.value[i] = most;
   return compose(axes);

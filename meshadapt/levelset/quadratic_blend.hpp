@@ -40,7 +40,7 @@ class QuadraticBlend {
 
   /// The tensor that asks for chords of the level set through a point no farther than a distance
   /// from it: k h^2 / 8 for one of length h, k its curvature in that direction; across it as in the
-  /// direction that bends most. 0 where the function has a kink.
+  /// direction that bends most. Not shorter than four distances; 0 where the function has a kink.
   Metric<Dim> chords(const Vector<Dim>& point, double distance) const;
 
  private:

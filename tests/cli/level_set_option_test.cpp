@@ -378,7 +378,7 @@ TEST_P(LevelSetOption, RefusesInOneLine) {
   expect_refused("-ls -sol phi.sol -lssurf", "options -ls and -lssurf: expected one of them");
   expect_refused("-lssurf -sol phi.sol --keep-volume 1", "option --keep-volume: expected -ls");
   if (dimension_ == 2)
-    expect_refused("-lssurf -sol phi.sol", "m.mesh: boundary_only: expected tetrahedra");
+    expect_refused("-lssurf -sol phi.sol", "m.mesh: expected tetrahedra and triangles");
   expect_refused("-ls -sol phi.sol -o phi.sol", "phi.sol");
 }
 
