@@ -214,8 +214,7 @@ class Cutter {
       by = low + (i % 3 == 2 ? 0.5 : low_error / (low_error - high_error)) * (high - low);
       error = shift(made, before, by) - wanted;
     }
-    if (by == 0 || std::abs(error) > std::abs(before.report.minus_volume - wanted) ||
-        !is_valid(made))
+    if (!(std::abs(error) < std::abs(before.report.minus_volume - wanted)) || !is_valid(made))
       made = before;
     else
       finish_shift(made, by);

@@ -106,7 +106,7 @@ TYPED_TEST(LevelSetSizesIn, ResolveFilmsAndSpecksThatTheMeshDoesNotShow) {
     });
     const AdaptedMesh result = refine_to_level_set(
         executor, mesh, constant_metric(mesh, size_in(dim)), function,
-        {.tolerance = 0.3 * half, .most_passes = 20, .adapt = {.gradation = 1.3}});
+        {.tolerance = 0.2 * half, .most_passes = 20, .adapt = {.gradation = 1.3}});
     EXPECT_EQ(test::joined(result.report.warnings), "");
     EXPECT_EQ(test::joined(check_adapted(executor, mesh, result.mesh)), "");
     const auto ball = [](double r) {

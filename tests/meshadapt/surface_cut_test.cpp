@@ -44,9 +44,26 @@ Case random_solid(std::uint64_t seed) {
 
 /// The boundary of such a mesh as a surface; with two materials there are edges of three triangles.
 Case random_surface(std::uint64_t seed) {
-  Case c = random_solid(seed);
+  const Case solid = random_solid(seed);
+  Case c = solid;
   c.mesh.tetrahedra = {};
-  c.mesh.required_tetrahedra.clear();
+  c.mesh.coordinates.clear();
+  c.mesh.vertex_reference.clear();
+  c.values.clear();
+  std::map<VertexId, VertexId> number_of;
+  const auto renumber = [&](VertexId& v) {
+    const auto [at, is_new] = number_of.emplace(v, c.values.size());
+    if (is_new) {
+      const Vector<3> p = position_in<3>(solid.mesh, v);
+      c.mesh.coordinates.insert(c.mesh.coordinates.end(), p.x.begin(), p.x.end());
+      c.mesh.vertex_reference.push_back(solid.mesh.vertex_reference[v]);
+      c.values.push_back(solid.values[v]);
+    }
+    v = at->second;
+  };
+  for (auto& corners : c.mesh.triangles.vertices) std::ranges::for_each(corners, renumber);
+  for (auto& ends : c.mesh.edges.vertices) std::ranges::for_each(ends, renumber);
+  std::ranges::for_each(c.mesh.corners, renumber);
   return c;
 }
 
