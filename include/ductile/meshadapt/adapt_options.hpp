@@ -56,9 +56,9 @@ struct SurfaceFunction {
   /// that is too far away is an error.
   bool approximate = false;
   /// With a gradation or curved_sizes: returns the tensor, stored as Metric is, that asks for
-  /// elements at a point of the surface; 0 in directions in which it asks for nothing. Sizes become
-  /// shorter by a factor of 0.7 at most, 2D: 0.6. Empty: sizes are those of the model alone. Called
-  /// as `closest` is.
+  /// elements at a point of the surface; 0 in directions in which it asks for nothing. Edges become
+  /// shorter by a factor of 0.6 at most. Empty: sizes are those of the model alone. Called as
+  /// `closest` is.
   std::function<std::array<double, 6>(const std::array<double, 3>&)> sizes = {};
 };
 
