@@ -218,7 +218,7 @@ TYPED_TEST(LevelSetFunctionIn, MakesInterfacesFinerWhereTheyBendAlone) {
   SurfaceFunction surface = LevelSetFunction(executor, grid, values_on(grid, distance_from_ball))
                                 .surface(test::ball_interface, tolerance);
   const auto count = [&] {
-    const AnyMesh result = adapted(executor, mesh, surface, d == 2 ? 0.2 : 0.3).mesh;
+    const AnyMesh result = adapted(executor, mesh, surface, d == 2 ? 0.2 : 0.22).mesh;
     EXPECT_EQ(test::joined(check_adapted(executor, mesh, result, tolerance)), "");
     return test::interface_vertices(result).size();
   };
