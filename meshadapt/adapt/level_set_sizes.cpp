@@ -136,15 +136,14 @@ class Resolution {
   }
 
   /// Infinite where the edge may be as long as it is: where the function is linear within the
-  /// tolerance, and where the edge has the smallest size, which it has at kinks and other singular
-  /// points. Otherwise an edge between ends of different signs is divided by how far the function
-  /// is from linear. One between ends of the same sign is halved if the function has the other sign
-  /// in the middle, or has a kink and, falling as steeply as around there, could have it in one of
-  /// the halves.
+  /// tolerance, and where its halves would be below the smallest size, as in the end at kinks and
+  /// other singular points. Otherwise an edge between ends of different signs is divided by how far
+  /// the function is from linear. One between ends of the same sign is halved if the function has
+  /// the other sign in the middle, or has a kink and, falling as steeply as around there, could
+  /// have it in one of the halves.
   double size_for(std::size_t edge) const {
-    constexpr double kink = 0.1;     // a bend of the function that is sharper, over the length
-    constexpr double half = 0.4;     // because edges may become longer than the metric asks for
-    constexpr double longest = 1.5;  // of edges of the smallest size
+    constexpr double kink = 0.1;  // a bend of the function that is sharper, over the length
+    constexpr double half = 0.4;  // because edges may become longer than the metric asks for
     const double infinite = std::numeric_limits<double>::infinity();
     const double least = options_.smallest_size > 0 ? options_.smallest_size : options_.tolerance;
     const auto [from, to] = edges_[edge];
@@ -152,7 +151,7 @@ class Resolution {
     const double steepest = std::max(steepest_of_[from], steepest_of_[to]);
     const double length = norm(direction(edges_[edge]));
     const double off = std::abs(middle - 0.5 * (a + b)) / steepest;
-    if (!(steepest > 0) || off <= options_.tolerance || length <= longest * least) return infinite;
+    if (!(steepest > 0) || off <= options_.tolerance || length < 2 * least) return infinite;
     double share = half;
     if ((a < 0) != (b < 0)) {
       share = std::max(half, 2 * half * std::sqrt(options_.tolerance / off));
