@@ -30,7 +30,8 @@ struct LevelSetSizesOptions {
 /// Adapts the mesh to the metric, made finer at edges where the zero is not resolved, again and
 /// again: where the value in the middle of an edge shows that the zero is off by more than the
 /// tolerance, or that there is one between ends of the same sign. Returns the mesh as it is if all
-/// is resolved there, and ends when it is, or with a warning after the most passes. Edges of the
+/// is resolved there, and ends when it is, or after the most passes, with a warning if it is off by
+/// more than two tolerances. Edges of the
 /// smallest size count as resolved: at kinks, and where the gradient is 0, no size would be small
 /// enough. Elsewhere a cut at the zero is then within the tolerance of the function, as adapt()
 /// needs it to hold a Hausdorff tolerance against LevelSetFunction::surface(). Throws
