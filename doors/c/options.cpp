@@ -46,7 +46,7 @@ struct Named {
 using Options = ductile_options;
 using Text = std::string;
 
-constexpr std::array<Named, 25> all_options{{
+constexpr std::array<Named, 26> all_options{{
     {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,17 +17,13 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
-#include "ductile/meshadapt/metric_operations.hpp"
-#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
+#include "extents.hpp"
 #include "files.hpp"
-#include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "move_command.hpp"
-#include "recovery_option.hpp"
+#include "progress_bar.hpp"
 #include "run_in_team.hpp"
-#include "size_options.hpp"
 #include "system.hpp"
 
 namespace ductile::cli {
@@ -43,15 +39,24 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 43> own_options{{
+constexpr std::array<Option, 50> own_options{{
+    heading("Input and output"),
+    {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
+     "--out"},
+    {"--field", "FIELD", "carries fields to OUT.FIELD.sol, integrals kept; may be given again"},
+    {"--interpolate", "", "carries fields by their values; integrals change"},
+    {"--no-metric", "", "writes no metric beside the adapted mesh"},
+    {"--vtu", "FILE", "writes the adapted mesh for ParaView, too, a .vtu"},
+    {"--json", "FILE", "writes counts, times, quality and memory there, a .json, or - for output"},
+    {"--join", "X", "makes one of vertices that are at most X from each other; 0: at one place"},
+    {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
+    heading("Sizes"),
     {"-sol", "FIELD",
      "the metric or the sizes wanted, with -ls the level set (default: NAME.sol or .solb)"},
     {"-met", "FIELD", "the same as -sol; with -ls, the metric"},
-    {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
-     "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
     {"--solution", "FIELD",
-     "the metric in which this field of MESH, or of a file, is resolved by --elements elements"},
+     "the metric that suits this field of MESH, or of a file, with --elements elements"},
     {"--elements", "N", "with --solution: about how many elements to have"},
     {"--recovery", "least-squares|projection",
      "with --solution: how to get second derivatives (default: least-squares)"},
@@ -63,43 +68,37 @@ constexpr std::array<Option, 43> own_options{{
     {"-hmax", "X", "asks for no edge longer than X"},
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
     {"-hgradreq", "X",
-     "takes sizes from what is required, to grow and fall by X at most (default: as asked)"},
+     "sizes start at those of required entities and change by X at most (default: as asked)"},
     {"-f", "FILE",
      "bounds on sizes by reference, materials of -ls, a .mmg2d or .mmg3d (default: NAME's)"},
-    {"-nomove", "", "moves no vertex"},
-    {"-noswap", "", "swaps no edge or face"},
-    {"-noinsert", "", "splits and collapses no edge"},
-    {"-lag", "N",
-     "moves the mesh by the vectors of -sol (ductile help move); 0: without adapting it, 1, 2: "
-     "with"},
-    {"-nosurf", "", "leaves the boundary and interfaces as they are"},
+    heading("Geometry"),
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
-    {"-geometry", "FILE",
-     "with -hausd: they are up to X from the boundaries in FILE, a mesh, not from where they were"},
+    {"-geometry", "FILE", "with -hausd: measures X from the boundaries in FILE, a mesh"},
     {"-A", "",
      "with -hausd: sizes from how boundaries are curved, up to -hmax, growing by -hgrad (1.3)"},
-    {"-ar", "DEG",
-     "with -hausd, edges that turn by DEG degrees are ridges, which stay (default: 45)"},
+    {"-ar", "DEG", "with -hausd: keeps edges that turn by DEG degrees as ridges (default: 45)"},
+    {"-nosurf", "", "leaves the boundary and interfaces as they are"},
+    heading("Level sets"),
     {"-ls", "[V]", "cuts the mesh first where -sol, a file or a field of MESH, is V (0)"},
     {"-lssurf", "[V]", "the same for the triangles of the boundary alone, with references by side"},
     {"-rmc", "[X]", "with -ls, removes components with less than X of the volume (1e-5)"},
     {"-isoref", "N", "with -ls, facets where it is V get this reference (10)"},
     {"--keep-volume", "X", "with -ls, changes V so that the part below has this volume"},
-    {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
-    {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
-    {"--threads", "N", "threads to use (default: the cores this process may use)"},
+    heading("Motion"),
+    {"-lag", "N",
+     "moves the mesh by the vectors of -sol (ductile help move); 0: no adapting, 1, 2: adapting"},
+    heading("Quality"),
     {"--iterations", "N", "at most this many rounds of all kernels"},
     {"--thorough", "", "goes on for better shapes and lengths"},
-    {"--by-colours", "",
-     "as published: kernels by classes of a colouring, deferred updates; slower"},
+    {"-nomove", "", "moves no vertex"},
+    {"-noswap", "", "swaps no edge or face"},
+    {"-noinsert", "", "splits and collapses no edge"},
+    {"--by-colours", "", "the published method, by classes of a colouring; slower"},
     {"--racing", "", "with --by-colours, in order of arrival: runs may differ"},
-    {"--json", "FILE", "writes counts, times, quality and memory there, a .json, or - for output"},
-    {"--vtu", "FILE", "writes the adapted mesh for ParaView, too, a .vtu"},
-    {"--join", "X", "makes one of vertices that are at most X from each other; 0: at one place"},
-    {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
-    {"--no-metric", "", "writes no metric beside the adapted mesh"},
-    {"--field", "FIELD", "carries fields to OUT.FIELD.sol, integrals kept; may be given again"},
-    {"--interpolate", "", "carries fields by their values, whatever becomes of integrals"},
+    heading("Running"),
+    {"--threads", "N", "threads to use (default: the cores this process may use)"},
+    {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
+    {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
 }};
 
 /// The options above, and those of Mmg that have no effect.
@@ -110,175 +109,7 @@ constexpr auto options = [] {
   return all;
 }();
 
-fs::path only_mesh(const Arguments& arguments) {
-  std::vector<std::string> meshes = arguments.operands();
-  if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
-  if (meshes.size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()) +
-                     (meshes.size() == 2 ? "; -o says where the adapted one goes" : ""));
-  return input_of(meshes[0]);
-}
-
-/// Sets where the mesh goes and, unless that is standard output, the metric beside it.
-void set_output(Job& job, const Arguments& arguments, const std::optional<fs::path>& given) {
-  const auto out = arguments.text("-o");
-  if (!given && !out && job.input == "/dev/stdin")
-    throw UsageError("expected -o, because the mesh is read from standard input, found none");
-  job.output = given ? *given : out ? output_of(*out) : default_output(job.input);
-  expect_mesh_name(job.output);
-  job.with_metric = !arguments.has("--no-metric");
-  if (holds_fields(job.output)) return;
-  if (is_standard_output(job.output) && arguments.has("--field"))
-    throw UsageError(
-        "option --field: expected an output beside which fields can be, or -.vtu, found " +
-        job.output.string());
-  if (job.with_metric && !is_standard_output(job.output)) job.metric_out = field_beside(job.output);
-}
-
-/// Sizes are given in at most one way; otherwise a metric beside the mesh is used, if there is one.
-void set_sizes(Job& job, const Arguments& arguments) {
-  job.size = size_option(arguments, "-hsiz");
-  job.places = SizeOptions(arguments, "-hsiz");
-  job.level_set = level_set_option(arguments);
-  job.metric_in = arguments.text("-met");
-  if (!job.metric_in && !job.level_set) job.metric_in = arguments.text("-sol");
-  job.keep_sizes = arguments.has("-optim");
-  std::vector<std::string> given;
-  const auto add = [&](const char* option) {
-    if (arguments.has(option)) given.emplace_back(option);
-  };
-  add("-optim");
-  add("-A");
-  if (job.places.any() && !job.level_set) add("-f");
-  if (!job.places.any()) add("-hsiz");
-  if (!job.level_set) add("-sol");
-  add("-met");
-  add("--solution");
-  for (const char* option : {"--near", "--on", "--inside"})  // which are one way together
-    if (given.empty() || !given.back().starts_with("--")) add(option);
-  if (given.size() > 1)
-    throw UsageError("options " + given[0] + " and " + given[1] +
-                     ": expected one of them, found both");
-  if (arguments.has("-A") && !arguments.has("-hausd"))
-    throw UsageError(
-        "option -A: expected -hausd, which says how far from curved boundaries edges may be, found "
-        "none");
-  if (const auto field = arguments.text("--solution")) job.solution = {*field};
-  job.elements = arguments.positive("--elements").value_or(0);
-  if (job.solution.empty() != (job.elements == 0))
-    throw UsageError("options --solution and --elements: expected both or none, found one");
-  job.recovery = recovery_in(arguments);
-  if (job.solution.empty() && arguments.has("--recovery"))
-    throw UsageError("option --recovery: expected --solution as well, found none");
-  job.metric_found = given.empty() && !job.level_set;
-}
-
-void set_files(Job& job, const Arguments& arguments, const std::optional<fs::path>& output) {
-  job.input = only_mesh(arguments);
-  set_output(job, arguments, output);
-  job.json = json_output(arguments);
-  if (job.json == standard_output && is_standard_output(job.output))
-    throw UsageError("option --json: expected a file, because the mesh goes to standard output");
-  job.join = join_option(arguments);
-  job.vtu = arguments.text("--vtu");
-  if (job.vtu && job.vtu->extension() != ".vtu")
-    throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
-  job.fields = CarriedFields(arguments, job.output);
-  job.parameters = arguments.text("-f");
-  job.geometry = arguments.text("-geometry");
-  if (job.geometry && !arguments.has("-hausd"))
-    throw UsageError(
-        "option -geometry: expected -hausd, which says how far from it boundaries may "
-        "be, found none");
-  set_sizes(job, arguments);
-}
-
-/// A factor; 0 for none, which the command line says by 0 or less, as in Mmg.
-double gradation_of(const Arguments& arguments, std::string_view option) {
-  const double factor = arguments.number(option).value_or(0);
-  if (factor > 0 && factor < 1)
-    throw UsageError("option " + std::string(option) +
-                     ": expected a factor of 1 or more, or -1 for none, found '" +
-                     *arguments.text(option) + "'");
-  return std::max(factor, 0.0);
-}
-
-void set_options(AdaptOptions& adapt, const Arguments& arguments) {
-  adapt.smallest_size = size_option(arguments, "-hmin").value_or(0);
-  adapt.largest_size = size_option(arguments, "-hmax").value_or(0);
-  if (adapt.largest_size > 0 && adapt.smallest_size > adapt.largest_size)
-    throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
-  adapt.gradation = gradation_of(arguments, "-hgrad");
-  adapt.curved_sizes = arguments.has("-A");
-  if (adapt.gradation == 0 && arguments.has("-hgrad")) adapt.gradation = -1;
-  if (!arguments.has("-nosizreq")) adapt.required_gradation = gradation_of(arguments, "-hgradreq");
-  adapt.thorough = arguments.has("--thorough");
-  adapt.by_colours = arguments.has("--by-colours");
-  adapt.move = !arguments.has("-nomove");
-  adapt.swap = !arguments.has("-noswap");
-  adapt.insert = !arguments.has("-noinsert");
-  adapt.make.lock_boundary = arguments.has("-nosurf");
-  adapt.make.hausdorff_tolerance = size_option(arguments, "-hausd").value_or(0);
-  adapt.make.ridge_angle = arguments.positive("-ar").value_or(adapt.make.ridge_angle);
-  if (adapt.make.ridge_angle >= 90)
-    throw UsageError("option -ar: expected an angle of less than 90 degrees, found '" +
-                     *arguments.text("-ar") + "'");
-  if (arguments.has("-nr")) adapt.make.ridge_angle = std::nextafter(90.0, 0.0);
-  adapt.make.complete_boundary = arguments.has("--complete-boundary");
-  if (const auto n = arguments.integer("--iterations", 1, 1000)) adapt.iterations = *n;
-}
-
-std::vector<fs::path> outputs_of(const Job& job) {
-  std::vector<fs::path> paths = {place_of(job.output)};
-  if (job.metric_out) paths.push_back(*job.metric_out);
-  paths.insert(paths.end(), job.fields.outputs().begin(), job.fields.outputs().end());
-  if (job.vtu) paths.push_back(*job.vtu);
-  if (job.json && *job.json != standard_output) paths.push_back(*job.json);
-  return paths;
-}
-
-/// Throws UsageError if an output would replace an input. A mesh may be adapted in place, with its
-/// metric.
-void expect_inputs_to_stay(const Job& job) {
-  std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
-  if (job.metric_in) fields.push_back(*job.metric_in);
-  if (job.level_set && job.level_set->values) fields.emplace_back(*job.level_set->values);
-  for (const auto& path : {job.parameters, job.geometry})
-    if (path) fields.push_back(*path);
-  for (const fs::path& path : job.places.inputs()) fields.push_back(path);
-  inputs.insert(inputs.end(), fields.begin(), fields.end());
-  for (const auto& path : {job.json, job.vtu})
-    if (path) expect_no_input(*path, inputs);
-  std::error_code ignored;
-  if (fs::equivalent(job.output, job.input, ignored)) return;
-  expect_no_input(job.output, fields);
-  if (job.metric_out) expect_no_input(*job.metric_out, fields);
-  for (const fs::path& path : job.fields.outputs()) expect_no_input(path, fields);
-}
-
 }  // namespace
-
-AdaptJob adapt_job(const Arguments& arguments, const std::optional<fs::path>& output) {
-  Job job;
-  set_files(job, arguments, output);
-  set_options(job.adapt, arguments);
-  job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
-  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
-  job.racing = arguments.has("--racing");
-  if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
-    job.memory = static_cast<std::size_t>(*megabytes) << 20U;
-  job.unneeded = unneeded_mmg_options(arguments);
-  return job;
-}
-
-void check_files(AdaptJob& job) {
-  if (job.metric_found) job.metric_in = metric_beside(job.input);
-  job.metric_found = job.metric_found && job.metric_in;
-  if (job.level_set && !job.level_set->values)
-    if (const auto beside = metric_beside(job.input)) job.level_set->values = beside->string();
-  expect_inputs_to_stay(job);
-  meshadapt::check_writable(outputs_of(job));
-}
 
 std::size_t memory_left(std::optional<std::size_t> given) {
   const std::size_t most = given ? *given : runtime::most_memory(), held = runtime::held_memory();
@@ -287,34 +118,13 @@ std::size_t memory_left(std::optional<std::size_t> given) {
 
 namespace {
 
-/// One line on standard error, rewritten in place; gone when the work is done.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool shown) : shown_(shown) {}
-  ~ProgressLine() {
-    if (shown_) std::fprintf(stderr, "\r\033[K");
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(const meshadapt::AdaptProgress& progress) const {
-    if (!shown_) return;
-    std::fprintf(stderr, "\r\033[Kiteration %d: %s, %s changes", progress.iteration, progress.step,
-                 with_commas(progress.changes).c_str());
-    std::fflush(stderr);
-  }
-
- private:
-  bool shown_;
-};
-
 AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
                                 const AnyField& metric, const meshadapt::Sizes& sizes) {
-  const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
+  ProgressBar bar(job.verbosity > 0 && stderr_is_terminal());
   AdaptOptions adapt = job.adapt;
   adapt.memory_limit = memory_left(job.memory);
-  adapt.progress = [&line](const meshadapt::AdaptProgress& progress) {
-    line.show(progress);
+  adapt.progress = [&bar](const meshadapt::AdaptProgress& progress) {
+    bar.show(progress);
     return true;
   };
   return !job.places.any() ? meshadapt::adapt(executor, mesh, metric, adapt)
@@ -334,7 +144,7 @@ std::string what_was_done(const Job& job, const AdaptInput& input, const AdaptSu
   text += to_text(summary, job.verbosity > 1);
   for (const fs::path& path : outputs_of(job))
     written += (written.empty() ? "written: " : ", ") + path.string();
-  return text + meshadapt::printable(written) + "\n";
+  return text + meshadapt::printable(written);
 }
 
 bool is_level_set(const Job& job, const meshadapt::NamedField& field) {
@@ -377,7 +187,46 @@ void write_outputs(const Job& job, const AdaptOutput& output, meshadapt::Warning
 
 namespace {
 
+/// How far curved boundaries are from where they were. If memory runs out here, that is not told,
+/// because the mesh itself is there.
+std::optional<double> distance_from(const Executor& executor, const AnyMesh& before,
+                                    const AnyMesh& after, const MakeMeshOptions& make) {
+  try {
+    if (make.geometry) return distance_to(executor, after, *make.geometry);
+    return distance_to(executor, after,
+                       meshadapt::Geometry(executor, before,
+                                           {.tolerance = make.hausdorff_tolerance,
+                                            .ridge_angle = make.ridge_angle,
+                                            .complete_boundary = make.complete_boundary,
+                                            .functions = make.functions}));
+  } catch (const std::bad_alloc&) {
+    return std::nullopt;
+  }
+}
+
+AdaptSummary summary_of(const Job& job, const AdaptInput& input,
+                        const meshadapt::AdjacentMesh& before, const AdaptedMesh& adapted,
+                        const meshadapt::AdjacentMesh& after) {
+  const MakeMeshOptions& make = job.adapt.make;
+  const double tolerance = make.lock_boundary ? 0 : make.hausdorff_tolerance;
+  const bool tells = job.json || job.verbosity > 0;
+  AdaptSummary summary =
+      summarise(before, input.metric, adapted, after,
+                {.before = job.json || job.verbosity > 1,
+                 .after = tells,
+                 .expects_lengths = job.adapt.insert,
+                 .keeps_surface = make.hausdorff_tolerance == 0 && !make.lock_boundary,
+                 .hausdorff_tolerance = tolerance,
+                 .in_force = input.in_force});
+  if (!tells) return summary;
+  summary.ridges = ridge_count(adapted.mesh, make.ridge_angle);
+  if (tolerance > 0)
+    summary.distance = distance_from(after.executor(), before.mesh(), adapted.mesh, make);
+  return summary;
+}
+
 int work(const Executor& executor, Job job) {
+  const auto begin = std::chrono::steady_clock::now();
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   const AdaptInput input = read_input(executor, job, warnings);
@@ -391,14 +240,7 @@ int work(const Executor& executor, Job job) {
   adapted.mesh.name = job.output.string();
   const auto carried =
       job.fields.carry(executor, input.mesh_of_fields(), input.fields, adapted.mesh);
-  const AdaptSummary summary = summarise(
-      before, input.metric, adapted, after,
-      {.before = job.json || job.verbosity > 1,
-       .after = job.json || job.verbosity > 0,
-       .expects_lengths = job.adapt.insert,
-       .keeps_surface = job.adapt.make.hausdorff_tolerance == 0 && !job.adapt.make.lock_boundary,
-       .hausdorff_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.hausdorff_tolerance,
-       .in_force = input.in_force});
+  const AdaptSummary summary = summary_of(job, input, before, adapted, after);
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, input, summary) : std::string();
   write_outputs(
@@ -408,7 +250,9 @@ int work(const Executor& executor, Job job) {
       warnings);
   // From here on no memory is taken, because the outputs are there.
   const bool taken = is_standard_output(job.output) || job.json == standard_output;
-  std::fputs(said.c_str(), taken ? stderr : stdout);
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  if (!said.empty())
+    std::fprintf(taken ? stderr : stdout, "%s (%.2f s in all)\n", said.c_str(), passed.count());
   return done;
 }
 
@@ -426,15 +270,14 @@ const Command adapt_command{
     "adapt",
     "MESH [-sol METRIC] [-o OUT]",
     "adapts a mesh to a metric",
-    "The metric is a size or a tensor at each vertex; edges get a length of about one in it.\n"
-    "Without any, the sizes that the mesh has are kept, stretched as they are. Sizes by places "
-    "are\n"
-    "evaluated on the adapted mesh, too, which is adapted again while it lacks some, at most five\n"
-    "times in all. A level set is cut out first; references are 3 below V, 2 above and 10 "
-    "between,\n"
-    "and with -hausd the interface is adapted to its curved surface. The metric at the new "
-    "vertices is written beside the adapted mesh. Old output\n"
-    "files stay as they are until the new ones are complete.",
+    "The metric is a size or a tensor at each vertex; edges get a length of about one in it, and "
+    "it\n"
+    "is written beside the adapted mesh. Without any, the sizes that the mesh has are kept. Sizes\n"
+    "by places are evaluated on the adapted mesh, too, which is adapted again while it lacks "
+    "some,\n"
+    "at most five times in all. Along a level set the mesh is cut first: references are 3 below V, "
+    "2\n"
+    "above and 10 between; with -hausd the interface is adapted to its curved surface.",
     options,
     run};
 

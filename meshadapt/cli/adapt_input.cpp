@@ -25,18 +25,11 @@ using runtime::Executor;
 /// fields.
 void join_all(const AdaptJob& job, AdaptInput& input, AnyField& level_set, Warnings& warnings) {
   if (!job.join) return;
-  AnyMesh& mesh = input.file.mesh;
-  const std::size_t before = mesh.vertex_count();
-  const auto kept = join(mesh, *job.join, warnings);
+  const auto kept = join(input.file.mesh, *job.join, warnings);
   for (AnyField* field : {&input.metric, &level_set})
     if (field->vertex_count > 0) *field = meshadapt::at_kept(*field, kept);
-  for (auto* fields : {&input.file.fields, &input.fields.fields})
-    for (meshadapt::NamedField& field : *fields)
-      if (is_at_vertices(field))
-        field.values =
-            meshadapt::at_kept({mesh.dimension, before, {field.type}, std::move(field.values), {}},
-                               kept)
-                .values;
+  keep_at(kept, input.file.fields, input.file.mesh.dimension);
+  keep_at(kept, input.fields.fields, input.file.mesh.dimension);
 }
 
 void set_metric(const Executor& executor, const AdaptJob& job, AdaptInput& input,

@@ -57,6 +57,9 @@ AdaptJob adapt_job(const Arguments& arguments,
 /// replace an input, InputError if outputs cannot be written.
 void check_files(AdaptJob& job);
 
+/// The files that the job writes; standard output by its name.
+std::vector<std::filesystem::path> outputs_of(const AdaptJob& job);
+
 /// The contents of a job's files, ready to be adapted.
 struct AdaptInput {
   meshadapt::MeshWithFields file;

@@ -100,6 +100,20 @@ std::string held_edges(const AdaptReport& report) {
          with_commas(report.held_short_edges) + " shorter than asked for\n";
 }
 
+/// "  boundary: 312 edges of ridges, within 0.043 of where it was (-hausd 0.05)".
+std::string boundary_in_words(const AdaptSummary& summary) {
+  std::string text =
+      "  boundary: " + (summary.after.dimension == 2
+                            ? counted(summary.ridges, "corner", "corners")
+                            : counted(summary.ridges, "edge of ridges", "edges of ridges"));
+  if (summary.distance) {
+    std::array<char, 64> words;
+    std::snprintf(words.data(), words.size(), ", within %.3g of where it was", *summary.distance);
+    text += words.data();
+  }
+  return text + "\n";
+}
+
 std::string figures(const MeshSummary& mesh, bool with_histograms) {
   if (!mesh.statistics) return {};
   return with_histograms ? to_text(*mesh.statistics) : short_figures(*mesh.statistics);
@@ -235,7 +249,7 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
   text += " set-up " + seconds(report.setup_seconds) + ", renumbering " +
           seconds(report.renumber_seconds) + "\n";
   return text + counts(summary.after) + demand_in_words(summary.after) +
-         figures(summary.after, with_histograms) + held_edges(report);
+         figures(summary.after, with_histograms) + boundary_in_words(summary) + held_edges(report);
 }
 
 std::string to_json(const AdaptSummary& summary, const std::string& cut) {
@@ -250,6 +264,8 @@ std::string to_json(const AdaptSummary& summary, const std::string& cut) {
          ",\n \"cut\": " + cut + ",\n \"metric\": " + json_of(summary.in_force) +
          ", \"elements_wanted\": " + std::to_string(elements_wanted(summary.after)) +
          ", \"elements\": " + std::to_string(element_count(summary.after)) +
+         ", \"ridges\": " + std::to_string(summary.ridges) +
+         ", \"distance\": " + (summary.distance ? json_number(*summary.distance) : "null") +
          ",\n \"threads\": " + std::to_string(summary.threads) +
          ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
          ", \"instructions\": " + json_string(std::string(report.instructions)) +

@@ -37,6 +37,9 @@ struct AdaptSummary {
   int threads = 0;
   bool deterministic = true;
   std::size_t peak_memory = 0;
+  std::size_t ridges = 0;  ///< edges, in 2D vertices, where the adapted boundary turns
+  std::optional<double>
+      distance{};  ///< of curved boundaries from where they were; none: not measured
 };
 
 struct SummaryOptions {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "files.hpp"
 
@@ -13,7 +12,6 @@ namespace ductile::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using meshadapt::AnyField;
 
 /// A name that no field before has: with that of the file in front if the name is taken.
 std::string other_name(std::string name, const std::string& file,
@@ -65,16 +63,10 @@ std::vector<meshadapt::NamedField> CarriedFields::carry(const runtime::Executor&
                                                         const Values& values,
                                                         const meshadapt::AnyMesh& to) const {
   if (inputs_.empty()) return {};
-  AnyField all = side_by_side(values.fields, from);
-  all.name = inputs_.front().string();
-  const meshadapt::FieldOnMesh old{from, all};
+  using meshadapt::Carrying;
   const bool by_value = interpolate_ || meshadapt::is_surface(from);
-  auto carried =
-      meshadapt::named_fields(by_value ? meshadapt::interpolate_field(executor, old, to).field
-                                       : meshadapt::project_field(executor, old, to).field,
-                              "field");
-  for (std::size_t i = 0; i < carried.size(); ++i) carried[i].name = values.fields[i].name;
-  return carried;
+  const Carrying way = by_value ? Carrying::by_value : Carrying::conservatively;
+  return meshadapt::transfer_fields(executor, {from, values.fields}, to, {way}).fields;
 }
 
 void CarriedFields::write(meshadapt::AtomicOutputs& outputs, const meshadapt::AnyMesh& mesh,

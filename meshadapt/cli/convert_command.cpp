@@ -1,14 +1,11 @@
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string>
 #include <utility>
 
 #include "command.hpp"
-#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 
 namespace ductile::cli {
@@ -20,94 +17,16 @@ namespace fs = std::filesystem;
 constexpr std::array<Option, 4> options{{
     {"-sol", "FIELD", "for formats that hold fields: those at the vertices to take along"},
     {"--version-of-file", "N",
-     "GMF: 1 to 4 (default: 2, more if the size needs it); .msh: 2 for 2.2, or 4 for 4.1"},
+     "GMF: 1 (text) to 4 (default: 2, or what the size needs); .msh: 2 for 2.2, or 4 for 4.1"},
     {"--binary", "", "for .msh and .vtk: bytes instead of text"},
     {"--join", "X", "makes one of vertices that are at most X from each other; 0: at one place"},
 }};
-
-/// Version 1 has numbers of 4 bytes in binary; rounding may move vertices onto each other.
-void warn_of_rounding(const std::vector<double>& values, const fs::path& to, int version,
-                      meshadapt::Warnings& warnings) {
-  const std::string ending = to.extension().string();
-  if (version != 1 || !ending.ends_with('b')) return;
-  const auto rounded = std::count_if(values.begin(), values.end(), [](double value) {
-    return static_cast<double>(static_cast<float>(value)) != value;
-  });
-  if (rounded > 0)
-    warnings.push_back(to.string() + ": version 1 holds 7 digits; " + std::to_string(rounded) +
-                       " numbers were rounded (--version-of-file 2 keeps them)");
-}
-
-bool rounds(const fs::path& to, const meshadapt::WriteOptions& form) {
-  return form.version == 1 && to.extension().string().ends_with('b');
-}
-
-std::vector<double> rounded(std::vector<double> values) {
-  for (double& value : values) value = static_cast<double>(static_cast<float>(value));
-  return values;
-}
-
-/// Calls a check; true unless it refuses.
-template <class Check>
-bool passes(Check&& check) {
-  try {
-    check();
-  } catch (const meshadapt::InputError&) {
-    return false;
-  }
-  return true;
-}
-
-/// Throws InputError if rounding makes a valid mesh, or metric, invalid.
-template <class Check, class Rounded>
-void expect_to_stay(const char* what, const fs::path& to, Check&& check, Rounded&& rounded_of) {
-  if (!passes([&] { check(rounded_of(false)); }) || passes([&] { check(rounded_of(true)); }))
-    return;
-  throw meshadapt::InputError(to.string() +
-                              ": version 1 holds 7 digits, and rounded to those it is" +
-                              " no valid " + what + " any more; --version-of-file 2 keeps them");
-}
-
-void expect_mesh_to_stay(meshadapt::AnyMesh mesh, const fs::path& to) {
-  const std::vector<double> exact = mesh.coordinates;
-  expect_to_stay(
-      "mesh", to,
-      [](const meshadapt::AnyMesh& any) {
-        meshadapt::expect_adaptable(runtime::Executor({.threads = 1}), any,
-                                    {.complete_boundary = true});
-      },
-      [&](bool round) -> const meshadapt::AnyMesh& {
-        mesh.coordinates = round ? rounded(exact) : exact;
-        return mesh;
-      });
-}
-
-void expect_metric_to_stay(meshadapt::AnyField field, const fs::path& to) {
-  meshadapt::AnyMesh any;  // only to have as many vertices
-  any.dimension = field.dimension;
-  any.vertex_reference.assign(field.vertex_count, 0);
-  any.coordinates.assign(field.vertex_count * static_cast<std::size_t>(field.dimension), 0);
-  const std::vector<double> exact = field.values;
-  expect_to_stay(
-      "metric", to, [&](const meshadapt::AnyField& metric) { meshadapt::metric_of(metric, any); },
-      [&](bool round) -> const meshadapt::AnyField& {
-        field.values = round ? rounded(exact) : exact;
-        return field;
-      });
-}
 
 bool holds_field(const fs::path& path) {
   return path.extension() == ".sol" || path.extension() == ".solb";
 }
 bool is_gmf(const fs::path& path) {
   return holds_field(path) || path.extension() == ".mesh" || path.extension() == ".meshb";
-}
-
-void convert_field(const meshadapt::AnyField& field, const fs::path& to,
-                   const meshadapt::WriteOptions& form, meshadapt::Warnings& warnings) {
-  if (rounds(to, form)) expect_metric_to_stay(field, to);
-  warn_of_rounding(field.values, to, form.version, warnings);
-  meshadapt::write_field(place_of(to), field, form);
 }
 
 void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
@@ -118,21 +37,6 @@ void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
                        "; convert to a .sol for those at vertices");
 }
 
-/// With --join, joins vertices of a mesh; fields at vertices keep the values of those that stay.
-void join_in(meshadapt::MeshWithFields& file, const Arguments& arguments,
-             meshadapt::Warnings& warnings) {
-  const auto distance = join_option(arguments);
-  if (!distance) return;
-  const std::size_t count = file.mesh.vertex_count();
-  const auto kept = join(file.mesh, *distance, warnings);
-  for (auto& field : file.fields)
-    if (is_at_vertices(field))
-      field.values =
-          meshadapt::at_kept(
-              {file.mesh.dimension, count, {field.type}, std::move(field.values), {}}, kept)
-              .values;
-}
-
 void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,
                   meshadapt::WriteOptions form, meshadapt::Warnings& warnings) {
   meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(from, &warnings);
@@ -140,11 +44,8 @@ void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arg
     for (auto& field : meshadapt::named_fields(read_fields(*path, file.mesh, warnings),
                                                as_utf8(fs::path(*path).stem().string())))
       file.fields.push_back(std::move(field));
-  join_in(file, arguments, warnings);
-  if (is_gmf(to)) {
-    if (rounds(to, form)) expect_mesh_to_stay(file.mesh, to);
-    warn_of_rounding(file.mesh.coordinates, to, form.version, warnings);
-  }
+  if (const auto distance = join_option(arguments))
+    keep_at(join(file.mesh, *distance, warnings), file.fields, file.mesh.dimension);
   if (holds_fields(to))
     form.fields = file.fields;
   else
@@ -173,6 +74,8 @@ meshadapt::WriteOptions form_of(const Arguments& arguments, const fs::path& to) 
   const bool is_msh = to.extension() == ".msh", is_vtk = to.extension() == ".vtk";
   if (form.version != 0 && !is_gmf(to) && !is_msh)
     throw UsageError("option --version-of-file: " + to.string() + " takes none");
+  if (form.version == 1 && to.extension().string().ends_with('b'))
+    throw UsageError("option --version-of-file: binary files of version 1 hold 7 digits; take 2");
   if (is_msh && form.version % 2 != 0)
     throw UsageError("option --version-of-file: " + to.string() + " takes 2 or 4");
   if (holds_field(to))
@@ -201,10 +104,10 @@ int run(const Arguments& arguments) {
   meshadapt::Warnings warnings;
   form.warnings = &warnings;
   if (holds_field(from)) {
-    convert_field(meshadapt::read_field(from, &warnings), to, form, warnings);
+    meshadapt::write_field(place_of(to), meshadapt::read_field(from, &warnings), form);
   } else if (holds_field(to)) {
     const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from);
-    convert_field(read_fields(from, mesh, warnings), to, form, warnings);
+    meshadapt::write_field(place_of(to), read_fields(from, mesh, warnings), form);
   } else {
     convert_mesh(from, to, arguments, form, warnings);
   }

@@ -1,16 +1,30 @@
 /// @file
 /// Extents of a mesh as people ask for them: its box, the length, area or volume of what has one
-/// reference, and the smallest and largest angle.
+/// reference, and the smallest and largest angle; ridges of its boundary, and how far that is from
+/// where it was.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/geometry.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/executor.hpp"
 
 namespace ductile::cli {
+
+using Position = meshadapt::Vector<3>;
+/// Where a vertex is; z is 0 in 2D.
+Position position(const meshadapt::AnyMesh& mesh, std::size_t vertex);
+
+/// The length, area or volume of a cell with two, three or four corners.
+double measure(const meshadapt::AnyMesh& mesh, std::span<const std::uint32_t> corners);
 
 struct Extents {
   std::array<double, 3> low{}, high{};  ///< the box; entries beyond the dimension are 0
@@ -27,5 +41,15 @@ struct Extents {
 
 /// Sums are made in the order of the mesh. Expects cells to name existing vertices.
 Extents extents_of(const meshadapt::AnyMesh& mesh);
+
+/// The number of edges, in 2D of vertices, where listed facets turn by an angle in degrees or more,
+/// or where one ends or three meet.
+std::size_t ridge_count(const meshadapt::AnyMesh& mesh, double angle);
+
+/// The largest distance of listed facets from a geometry, at their corners and the middles of their
+/// edges and of themselves; none if nothing is curved. Thread safety: one caller; runs on the
+/// executor.
+std::optional<double> distance_to(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                                  const meshadapt::Geometry& geometry);
 
 }  // namespace ductile::cli

@@ -322,6 +322,27 @@ std::vector<std::uint32_t> join(meshadapt::AnyMesh& mesh, double distance,
   return std::move(joined.kept);
 }
 
+void keep_at(const std::vector<std::uint32_t>& kept, std::vector<meshadapt::NamedField>& fields,
+             int dimension) {
+  for (meshadapt::NamedField& field : fields) {
+    if (!is_at_vertices(field)) continue;
+    const auto rows = static_cast<std::size_t>(component_count(field.type, dimension));
+    field.values =
+        meshadapt::at_kept({dimension, field.values.size() / rows, {field.type}, field.values, {}},
+                           kept)
+            .values;
+  }
+}
+
+fs::path only_mesh(const Arguments& arguments, const char* hint) {
+  std::vector<std::string> meshes = arguments.operands();
+  if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
+  if (meshes.size() != 1)
+    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()) +
+                     (meshes.size() == 2 ? hint : ""));
+  return input_of(meshes[0]);
+}
+
 std::optional<fs::path> json_output(const Arguments& arguments) {
   const auto place = arguments.text("--json");
   return place ? std::optional<fs::path>(*place) : std::nullopt;

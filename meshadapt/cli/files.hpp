@@ -98,6 +98,13 @@ std::optional<double> join_option(const Arguments& arguments);
 /// Joins vertices within a distance, says how many in a warning, and returns those that are kept.
 std::vector<std::uint32_t> join(meshadapt::AnyMesh& mesh, double distance,
                                 meshadapt::Warnings& warnings);
+/// Leaves the values at vertices that were kept.
+void keep_at(const std::vector<std::uint32_t>& kept, std::vector<meshadapt::NamedField>& fields,
+             int dimension);
+
+/// The mesh of a command line that has one, also by Mmg's -in. Throws UsageError, with a hint if
+/// there are two.
+std::filesystem::path only_mesh(const Arguments& arguments, const char* hint = "");
 
 /// Standard output as the word for a file: "-".
 inline constexpr const char* standard_output = "-";

@@ -208,10 +208,9 @@ int work(const Executor& executor, const Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
-  if (arguments.operands().size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
+  const std::filesystem::path input = only_mesh(arguments);
   if (const auto json = arguments.text("--json"); json && *json != standard_output) {
-    expect_no_input(*json, {arguments.operands()[0], arguments.text("-sol").value_or("")});
+    expect_no_input(*json, {input, arguments.text("-sol").value_or("")});
     meshadapt::check_writable(*json);
   }
   return run_in_team({.threads = arguments.integer("--threads", 1, 4096).value_or(0)},

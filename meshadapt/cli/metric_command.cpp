@@ -30,28 +30,31 @@ using meshadapt::AnyMesh;
 using meshadapt::Metric;
 using runtime::Executor;
 
-constexpr std::array<Option, 17> options{{
+constexpr std::array<Option, 21> options{{
+    heading("All operations"),
     {"-o", "OUT", "where the metric goes, a .sol or .solb; with the mesh into a .vtu or .msh",
      "--out"},
-    {"--complexity", "X", "make, scale: the integral of sqrt(det metric) to reach"},
-    {"--elements", "N", "make, scale: the complexity of about N elements instead"},
-    {"--error", "X", "make: the interpolation error to reach instead"},
-    {"--norm", "P", "make: the L^P norm that the error is measured in, or inf (default: 2)"},
-    {"--recovery", "least-squares|projection",
-     "make: how to get second derivatives (default: least-squares)"},
-    {"--default", "H", "size: where nothing finer is asked for (default: the extent of the mesh)"},
-    {"--near", "PLACE:H[:GROW]",
-     "size: H in a point, sphere, box, line or file, growing around it; may be given again"},
-    {"--on", "BOUNDARY:H[:GROW]", "size: H on a boundary, by its reference or name; likewise"},
-    {"--in", "REGION:H[:GROW]", "size: H in a region, instead of the default; likewise",
-     "--inside"},
-    {"-hausd", "X", "distance: how far the smooth interface may be from its facets"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"--anisotropy", "X", "lets sizes differ by a factor of X at most between directions"},
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length, in the end"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
     {"-v", "N", "0 says nothing, 1 (default) sums up", "--verbose"},
+    heading("The goal of make and scale"),
+    {"--complexity", "X", "the integral of sqrt(det metric) to reach"},
+    {"--elements", "N", "the complexity of about N elements instead"},
+    {"--error", "X", "make: the interpolation error to reach instead"},
+    {"--norm", "P", "make: the L^P norm that the error is measured in, or inf (default: 2)"},
+    {"--recovery", "least-squares|projection",
+     "make: how to get second derivatives (default: least-squares)"},
+    heading("Places of size"),
+    {"--default", "H", "where nothing finer is asked for (default: the extent of the mesh)"},
+    {"--near", "PLACE:H[:GROW]",
+     "H in a point, sphere, box, line or file, growing around it; may be given again"},
+    {"--on", "BOUNDARY:H[:GROW]", "H on a boundary, by its reference or name; likewise"},
+    {"--in", "REGION:H[:GROW]", "H in a region, instead of the default; likewise", "--inside"},
+    heading("Distance around a region"),
+    {"-hausd", "X", "how far the smooth interface may be from its facets"},
 }};
 
 /// The command line, checked before any file is read.

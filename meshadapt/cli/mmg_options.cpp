@@ -7,12 +7,14 @@ namespace {
 struct Refused {
   std::string_view name, instead;
 };
-constexpr std::array<Refused, 7> refused{{
+constexpr std::array<Refused, 9> refused{{
     {"3dMedit", "Mmg's, not here: flat meshes of dimension 3 are read, and written in dimension 2"},
     {"nreg", "Mmg's, not here: normals are not smoothed"},
     {"nsd", "Mmg's, not here: the whole mesh is written"},
     {"optimLES", "Mmg's, not here: --thorough goes on for better shapes"},
-    {"out", "Mmg's: here it is -o"},
+    {"metric", "-sol METRIC gives it"},
+    {"output", "-o OUT names it"},
+    {"size", "ductile adapt has -hsiz X, and --near, --on and --inside"},
     {"xreg", "Mmg's, not here: vertices are not moved to smooth a surface"},
 }};
 

@@ -206,12 +206,8 @@ int run_lag(const Arguments& arguments) {
     if (arguments.has(option))
       throw UsageError(std::string("options -lag and ") + option +
                        ": expected one of them, found both");
-  std::vector<std::string> meshes = arguments.operands();
-  if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
-  if (meshes.size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()));
   MoveJob job;
-  job.input = input_of(meshes[0]);
+  job.input = only_mesh(arguments);
   const auto displacement = arguments.text("-sol");
   job.displacement = displacement ? *displacement : field_beside(job.input).string();
   set_common(job, arguments);

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.hpp"
@@ -52,9 +54,15 @@ void print_help(const Program& program, const Command& command) {
               std::string(program.name).c_str(), std::string(command.name).c_str(),
               std::string(command.operands).c_str(), std::string(command.summary).c_str());
   if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
-  std::printf("\nOptions (one or two dashes mean the same):\n");
-  std::printf("%s", help_lines(command.options).c_str());
-  std::printf("  %-22s %s\n", "-h, --help", "shows its options");
+  std::printf("\nOptions (one or two dashes mean the same):\n%s",
+              help_lines(command.options).c_str());
+  std::printf("  %-22s %s\n", "-h, --help", "shows this help");
+}
+
+/// Messages say what is wrong and then, behind a semicolon, what to do. This adds to the latter.
+std::string with_advice(const std::string& message, const std::string& advice) {
+  return message.find("; ") == std::string::npos ? message + "; " + advice
+                                                 : message + " (" + advice + ")";
 }
 
 [[noreturn]] void refuse_command(const Program& program, const std::string& name) {
@@ -62,7 +70,9 @@ void print_help(const Program& program, const Command& command) {
   for (const Command* command : program.commands)
     if (edit_distance(name, command->name) <= 2)
       message += "; did you mean '" + std::string(command->name) + "'?";
-  throw UsageError(message + " (" + std::string(program.name) + " help lists the commands)");
+  if (meshadapt::format_of(name) != nullptr && find_command(program, "adapt") != nullptr)
+    message += "; did you mean '" + std::string(program.name) + " adapt " + name + "'?";
+  throw UsageError(with_advice(message, std::string(program.name) + " help lists the commands"));
 }
 
 bool asks_for_help(std::span<const std::string> words) {
@@ -113,11 +123,16 @@ int dispatch(const Program& program, std::span<const std::string> words) {
   return command->run(arguments_of(*command, words.subspan(1)));
 }
 
-/// Allocates nothing, because memory may have run out.
+/// Prints a line with what is wrong and, if the message has any, one with what to do. Allocates
+/// nothing, because memory may have run out.
 int tell(const Program& program, const char* message, int status) noexcept {
-  if (program.speaks)
-    std::fprintf(stderr, "%.*s: %s\n", static_cast<int>(program.name.size()), program.name.data(),
-                 message);
+  if (!program.speaks) return status;
+  const std::string_view text(message);
+  const std::size_t end = std::min(text.find("; "), text.size());
+  const bool advises = end < text.size();
+  std::fprintf(stderr, "%.*s: error: %.*s%s%s\n", static_cast<int>(program.name.size()),
+               program.name.data(), static_cast<int>(end), message, advises ? "\n  " : "",
+               advises ? message + end + 2 : "");
   return status;
 }
 
@@ -129,10 +144,10 @@ int run_words(const Program& program, std::span<const std::string> words) {
     return status;
   } catch (const UsageError& error) {
     const bool known = !words.empty() && find_command(program, words[0]);
-    const std::string message =
-        (known ? words[0] + ": " : std::string()) + error.what() +
-        (known ? " (" + std::string(program.name) + " help " + words[0] + " lists the options)"
-               : "");
+    std::string message = error.what();
+    if (known)
+      message = with_advice(words[0] + ": " + message,
+                            std::string(program.name) + " help " + words[0] + " lists the options");
     return tell(program, meshadapt::printable(message).c_str(), misused);
   } catch (const meshadapt::InputError& error) {
     return tell(program, error.in_file(), misused);

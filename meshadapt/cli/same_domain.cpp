@@ -8,8 +8,7 @@
 #include <span>
 #include <string>
 
-#include "core/determinant.hpp"
-#include "ductile/meshadapt/simplex.hpp"
+#include "extents.hpp"
 
 namespace ductile::cli {
 
@@ -30,42 +29,22 @@ void each_element(const AnyMesh& mesh, auto&& visit) {
   mesh.dimension == 2 ? all(mesh.triangles) : all(mesh.tetrahedra);
 }
 
-double distance(const double* a, const double* b, int dimension) {
-  double sum = 0;
-  for (int axis = 0; axis < dimension; ++axis) sum += (a[axis] - b[axis]) * (a[axis] - b[axis]);
-  return std::sqrt(sum);
-}
-
-const double* position(const AnyMesh& mesh, std::size_t vertex) {
-  return &mesh.coordinates[vertex * static_cast<std::size_t>(mesh.dimension)];
-}
-
 /// [vertex] The longest edge of the elements around it.
 std::vector<double> sizes_of(const AnyMesh& mesh) {
   std::vector<double> size_of(mesh.vertex_count());
   each_element(mesh, [&](std::span<const std::uint32_t> corners) {
     for (const std::uint32_t a : corners)
       for (const std::uint32_t b : corners)
-        size_of[a] =
-            std::max(size_of[a], distance(position(mesh, a), position(mesh, b), mesh.dimension));
+        size_of[a] = std::max(size_of[a], norm(position(mesh, a) - position(mesh, b)));
   });
   return size_of;
 }
 
-template <int Dim>
-double volume_in(const AnyMesh& mesh) {
-  double sum = 0;
-  for (const auto& corners : meshadapt::elements_in<Dim>(mesh).vertices) {
-    std::array<meshadapt::Vector<Dim>, Dim + 1> points;
-    for (std::size_t i = 0; i <= Dim; ++i)
-      points[i] = meshadapt::position_in<Dim>(mesh, corners[i]);
-    sum += std::abs(meshadapt::plain_determinant(points)) / (Dim == 2 ? 2 : 6);
-  }
-  return sum;
-}
-
 double volume(const AnyMesh& mesh) {
-  return mesh.dimension == 2 ? volume_in<2>(mesh) : volume_in<3>(mesh);
+  double sum = 0;
+  each_element(mesh,
+               [&](std::span<const std::uint32_t> corners) { sum += measure(mesh, corners); });
+  return sum;
 }
 
 std::string number(double value) {
@@ -93,7 +72,10 @@ void expect_vertices_inside(const Passage& meshes, const std::vector<double>& cl
   std::size_t farthest = meshes.to.vertex_count();
   const auto outside = [&](std::size_t v) {
     const auto dimension = static_cast<std::size_t>(meshes.to.dimension);
-    return distance(position(meshes.to, v), &closest[v * dimension], meshes.to.dimension);
+    Position gap = position(meshes.to, v);
+    for (std::size_t axis = 0; axis < dimension; ++axis)
+      gap.x[axis] -= closest[v * dimension + axis];
+    return norm(gap);
   };
   each_element(meshes.to, [&](std::span<const std::uint32_t> corners) {
     for (const std::uint32_t v : corners)

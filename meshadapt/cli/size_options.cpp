@@ -166,7 +166,7 @@ meshadapt::SizePlace SizeOptions::place_of(const Words& words, const AnyMesh& me
     if (good) return;
     const auto shape = std::find_if(shapes.begin(), shapes.end(),
                                     [&](const Shape& one) { return one.name == words.shape; });
-    refuse(words.all, std::string(shape->numbers) + "; the mesh has dimension " +
+    refuse(words.all, std::string(shape->numbers) + " because the mesh has dimension " +
                           std::to_string(dimension) + ", found " + std::to_string(count) +
                           (count == 1 ? " number" : " numbers"));
   };

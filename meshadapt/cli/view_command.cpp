@@ -71,10 +71,8 @@ struct Job {
 };
 
 Job read_job(const Arguments& arguments) {
-  if (arguments.operands().size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
   Job job;
-  job.input = input_of(arguments.operands()[0]);
+  job.input = only_mesh(arguments);
   job.picture = arguments.text("-o").value_or("");
   if (job.picture.empty()) job.picture = fs::path(job.input).replace_extension(".png");
   job.sol = arguments.text("-sol");

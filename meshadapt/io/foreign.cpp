@@ -88,6 +88,9 @@ constexpr std::array endings{
     Foreign{".ele", "TetGen", by_meshio},
     Foreign{".ugrid", "UGRID", by_meshio},
     Foreign{".mdpa", "Kratos", by_meshio},
+    Foreign{
+        ".msh", "a .msh that is not Gmsh's",
+        "; FreeFEM's own are those of 2D: save it as .mesh first, by savemesh(Th, \"th.mesh\")"},
     Foreign{".step", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
     Foreign{".stp", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
     Foreign{".brep", "a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},

@@ -77,8 +77,8 @@ inline std::set<std::pair<int, std::int32_t>> references_named(const AnyMesh& me
   for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
   throw InputError("expected " +
                    (known.empty() ? std::string("a number, because the mesh has no names")
-                                  : "a name that the mesh has, one of " + known) +
-                   "; found '" + name + "'");
+                                  : "a name that the mesh has (" + known + ")") +
+                   ", found '" + name + "'");
 }
 
 /// Calls take(source) for each source; an InputError that it throws then begins with the source.

@@ -99,7 +99,9 @@ class Trial {
     return false;
   }
 
-  static std::string last_line(const std::string& text) {
+  /// An indented line says what to do about the one above, so both count as one.
+  static std::string last_line(std::string text) {
+    for (std::size_t at; (at = text.find("\n  ")) != std::string::npos;) text.replace(at, 3, "; ");
     const std::size_t end = text.find_last_not_of('\n');
     if (end == std::string::npos) return "(no message)";
     const std::size_t begin = text.rfind('\n', end);

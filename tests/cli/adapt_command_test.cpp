@@ -148,7 +148,7 @@ TEST(AdaptCommand, AdaptsToSizesByPlacesThatTheMeshDoesNotShow) {
            {"-sol a.sol --near point:0,0:.1", "options -sol and --near: expected one of them"},
            {"-optim --on wall:.1 --inside 1:.1", "options -optim and --on: expected one of them"},
            {"-f a.mmg2d --inside 1:.1", "options -f and --inside: expected one of them"},
-           {"--on wal:.1", "option --on wal:.1: expected a name that the mesh has, one of wall"},
+           {"--on wal:.1", "option --on wal:.1: expected a name that the mesh has (wall)"},
            {"--near ball:0,0:.1", "expected point, sphere, box, line or file"},
            {"--near file:line.mesh:.1 -o line.mesh", "is read, and would be replaced"}}) {
     const Outcome outcome = folder.run("adapt a.msh -o c.mesh " + std::string(words));

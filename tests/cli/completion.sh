@@ -75,7 +75,7 @@ expect "the manual's formats" "$("$program" help | sed -n 's/^  \(\.[a-z0-9]*\) 
 
 # ---- Words and files ----
 
-operations=$({ "$program" metric 2>&1 || true; } | sed 's/.*expected \(.*\), found.*/\1/; s/, / /g; s/ or / /')
+operations=$({ "$program" metric 2>&1 || true; } | sed -n '/expected/{s/.*expected \(.*\), found.*/\1/; s/, / /g; s/ or / /; p}')
 # shellcheck disable=SC2086
 completes metric "" -- $operations
 completes metric sc -- scale

@@ -353,7 +353,7 @@ TEST(MetricCommand, WritesSignedDistances) {
            {"--inside 3 --near point:0,0:1", "option --near: distance takes none"},
            {"--inside 3 -hausd -1", "option -hausd: "},
            {"--inside 9", "no element has the reference 9"},
-           {"--inside wall", "expected a name that the mesh has, one of disk; found 'wall'"},
+           {"--inside wall", "expected a name that the mesh has (disk), found 'wall'"},
            {"--inside 2 --inside 3", "expected facets between elements inside and others"}}) {
     const Outcome outcome =
         folder.run("metric distance disk.msh " + std::string(words) + " -o no.sol");

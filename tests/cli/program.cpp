@@ -12,6 +12,13 @@ namespace ductile::cli {
 
 namespace fs = std::filesystem;
 
+bool tells_one_error(const std::string& said) {
+  const std::size_t end = said.find('\n');
+  if (!said.starts_with("ductile: error: ") || end == std::string::npos) return false;
+  return end + 1 == said.size() ||
+         (said.compare(end + 1, 2, "  ") == 0 && said.find('\n', end + 1) + 1 == said.size());
+}
+
 Folder::Folder() {
   std::string name = (fs::temp_directory_path() / ("ductile-test-" + std::string(6, 'X'))).string();
   if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");

@@ -12,6 +12,10 @@ struct Outcome {
   std::string out, err;
 };
 
+/// Is this what the program says of one error: a line that begins so, and at most one more,
+/// indented, that says what to do?
+bool tells_one_error(const std::string& said);
+
 /// A new empty folder, gone with the object.
 class Folder {
  public:

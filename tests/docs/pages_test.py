@@ -115,6 +115,21 @@ class Excerpts(unittest.TestCase):
         self.assertGreater(found, 20)
 
 
+    def test_lines_of_the_loops_with_solvers_are_in_their_scripts(self):
+        """Blocks of `py` and `freefem`: the scripts run in doors/python/tests/test_solvers.py."""
+
+        def plain(text):
+            return [" ".join(re.sub(r"  #.*", "", line).split()) for line in text.split("\n") if line.strip()]
+
+        scripts = glob.glob("docs/examples/*.py") + glob.glob("docs/examples/*.edp")
+        lines, found = {line for path in scripts for line in plain(pages.read(path))}, 0
+        for _, block in re.findall(r"^```(py|freefem)\n(.*?)^```", TEXTS["docs/solvers.md"], re.MULTILINE | re.DOTALL):
+            for line in plain(block):
+                self.assertTrue(line in lines, line)
+                found += 1
+        self.assertGreater(found, 8)
+
+
 class Site(unittest.TestCase):
     def test_leaves_out_the_notebook_and_superseded_decisions(self):
         off = [page for page in TEXTS if pages.is_off_site(page)]

@@ -272,7 +272,7 @@ TEST(Sizes, SayWhatMakesNoSense) {
             "triangles[0]: expected points below 1, found 1"},
            {{Referenced{4, 1}, 0.1}, "expected entities of a dimension from 0 to 3, found 4"},
            {{Referenced{1, 77}, 0.1}, "expected edges of reference 77 in a.mesh, found none"},
-           {{Named{"wal"}, 0.1}, "a name that the mesh has, one of steel, wall; found 'wal'"}}) {
+           {{Named{"wal"}, 0.1}, "a name that the mesh has (steel, wall), found 'wal'"}}) {
     const std::string said = test::complaint([&, source = source] {
       Sizes sizes{.sources = {{ball, 0.1}, source}};
       size_field(Executor({.threads = 1}), mesh, sizes);

@@ -422,6 +422,7 @@ TEST(TaggedFiles, AreToldByTheirFormat) {
       {"a.mesh", "MFEM mesh v1.0\ndimension\n2\n", "MFEM"},
       {"a.bdf", "$ made by hand\nGRID,1,,0.,0.,0.\n", "Nastran"},
       {"points", "/*--*/\nFoamFile\n{\n", "OpenFOAM"},
+      {"a.msh", "4 2 4\n0 0 1\n1 0 1\n", "FreeFEM"},
       {"a.mesh", "\x1f\x8b\b\0"s, "gzip"}};
   for (const auto& [name, text, format] : files) {
     const std::string told = complaint_about(name, text);

@@ -418,7 +418,7 @@ def try_mistakes(dim):
     text = adapt("in.mesh", "-o", "out.mesh", "--near", "point:0,0,0:0.1", status=2)
     expect("the mesh has dimension 2, found 3 numbers" in text, text)
     text = adapt("in.mesh", "-o", "out.mesh", "--json", "out.json", status=2)
-    expect(text.count("ductile-mpi: ") == 1 and "not in ductile-mpi; " in text, text)
+    expect(text.count("ductile-mpi: ") == 1 and "\n  not in ductile-mpi; " in text, text)
     adapt("missing.mesh", "-o", "out.mesh", status=2)
     write_sol("in.sol", dim, [-1.0] * len(sections("in.mesh")[1]["Vertices"]))
     adapt("in.mesh", "-o", "out.mesh", status=2)

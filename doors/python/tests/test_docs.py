@@ -18,8 +18,9 @@ ROOT = pathlib.Path(__file__).parents[3]
 PAGES = ["README.md", "CONTRIBUTING.md", "doors/python/README.md", "docs/gallery/README.md",
          *(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))]
 PROGRAM = os.environ.get("DUCTILE_PROGRAM", "")
-# What other tests run: ./dev's commands themselves, installs, the runtime's guide, PETSc.
-ELSEWHERE = {"cmake", "mkdir", "pip", "sudo", "apt", "python3", "env/bin/pip", "cc", "gfortran", "mmg3d_O3", "mpirun", "build/flips"}
+# What other tests run: ./dev's commands themselves, installs, the runtime's guide, PETSc, solvers.
+ELSEWHERE = {"cmake", "mkdir", "pip", "sudo", "apt", "python3", "env/bin/pip", "cc", "gfortran", "mmg3d_O3", "mpirun", "build/flips",
+             "FreeFem++", "gmshToFoam", "laplacianFoam", "foamToVTK"}
 
 
 def blocks(page, *languages):

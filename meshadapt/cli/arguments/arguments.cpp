@@ -20,9 +20,8 @@ bool looks_like_option(std::string_view word) {
 
 const Option* find(std::span<const Option> options, std::string_view word) {
   for (const Option& option : options)
-    if (without_dashes(word) == without_dashes(option.name) ||
-        (!option.alias.empty() && without_dashes(word) == without_dashes(option.alias)))
-      return &option;
+    for (const std::string_view name : {option.name, option.alias})
+      if (!name.empty() && without_dashes(word) == without_dashes(name)) return &option;
   return nullptr;
 }
 
@@ -170,6 +169,10 @@ std::string help_lines(std::span<const Option> options) {
   std::string text;
   for (const Option& option : options) {
     if (option.help.empty()) continue;
+    if (option.name.empty()) {
+      text.append("\n").append(option.help).append(":\n");
+      continue;
+    }
     std::string left(option.name);
     if (!option.alias.empty()) left.append(", ").append(option.alias);
     if (!option.value.empty()) left.append(" ").append(option.value);

@@ -33,6 +33,9 @@ struct Option {
   std::string_view alias{};  ///< another name, with its dashes
 };
 
+/// A row that begins a group of options in help.
+constexpr Option heading(std::string_view words) { return {{}, {}, words}; }
+
 class Arguments {
  public:
   /// Throws UsageError. `words` are what follows the command's name.

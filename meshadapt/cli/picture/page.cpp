@@ -7,15 +7,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "../report.hpp"
+#include "extents.hpp"
 #include "legend.hpp"
 #include "page_template.hpp"
+#include "section.hpp"
 
 namespace ductile::cli {
 
@@ -65,37 +66,29 @@ void append(std::vector<std::uint8_t>& bytes, const Colour& colour) {
 /// Positions within the unit ball around the middle of the box, and that box.
 struct Places {
   std::vector<float> of_vertices{};  ///< [3 vertex + axis]
-  std::array<double, 3> low{}, high{};
+  Position low, high;
 };
 
 Places places_of(const AnyMesh& mesh) {
-  const auto dim = static_cast<std::size_t>(mesh.dimension);
   Places places;
-  std::array<double, 3> middle{};
+  Position middle;
   double radius = 0;
-  for (std::size_t k = 0; k < dim; ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-      low = std::min(low, mesh.coordinates[v * dim + k]);
-      high = std::max(high, mesh.coordinates[v * dim + k]);
-    }
+  for (int k = 0; k < mesh.dimension; ++k) {
+    const auto [low, high] = span_along(mesh, k);
     middle[k] = low / 2 + high / 2;
-    places.low[k] = low;
-    places.high[k] = high;
     radius = std::hypot(radius, high / 2 - low / 2);
+    places.low[k] = low - middle[k];
+    places.high[k] = high - middle[k];
   }
+  places.low *= 1 / radius;
+  places.high *= 1 / radius;
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    for (std::size_t k = 0; k < 3; ++k)
-      places.of_vertices.push_back(
-          k < dim ? static_cast<float>((mesh.coordinates[v * dim + k] - middle[k]) / radius) : 0);
-  for (std::size_t k = 0; k < 3; ++k) {
-    places.low[k] = (places.low[k] - middle[k]) / radius;
-    places.high[k] = (places.high[k] - middle[k]) / radius;
-  }
+    for (const double x : (position(mesh, v) - middle).x)
+      places.of_vertices.push_back(static_cast<float>(x / radius));
   return places;
 }
 
-std::string json_of(const std::array<double, 3>& values) {
+std::string json_of(const Position& values) {
   return "[" + json_number(values[0]) + ", " + json_number(values[1]) + ", " +
          json_number(values[2]) + "]";
 }

@@ -6,6 +6,7 @@
 #include "../files.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/statistics.hpp"
+#include "extents.hpp"
 
 namespace ductile::cli {
 
@@ -14,24 +15,11 @@ namespace {
 using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 
-Position position(const AnyMesh& mesh, std::uint32_t vertex) {
-  const double* x =
-      &mesh.coordinates[std::size_t{vertex} * static_cast<std::size_t>(mesh.dimension)];
-  return {{x[0], x[1], mesh.dimension == 3 ? x[2] : 0}};
-}
-
 /// Edge of the regular element with the same area or volume.
 double size_of(const AnyMesh& mesh, std::size_t element) {
-  if (element_dimension(mesh) == 2) {
-    const auto& v = mesh.triangles.vertices[element];
-    const Position a = position(mesh, v[0]);
-    const double area = norm(cross(position(mesh, v[1]) - a, position(mesh, v[2]) - a)) / 2;
-    return std::sqrt(area * 4 / std::sqrt(3.0));
-  }
-  const auto& v = mesh.tetrahedra.vertices[element];
-  const Position a = position(mesh, v[0]);
-  const Position normal = cross(position(mesh, v[1]) - a, position(mesh, v[2]) - a);
-  return std::cbrt(std::abs(dot(normal, position(mesh, v[3]) - a)) * std::sqrt(2.0));
+  if (element_dimension(mesh) == 2)
+    return std::sqrt(measure(mesh, mesh.triangles.vertices[element]) * 4 / std::sqrt(3.0));
+  return std::cbrt(measure(mesh, mesh.tetrahedra.vertices[element]) * 6 * std::sqrt(2.0));
 }
 
 Tinting tint_by_size(const AnyMesh& mesh, std::size_t elements) {
