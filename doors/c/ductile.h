@@ -183,8 +183,9 @@ int ductile_signed_distance(const ductile_mesh* mesh, const ductile_options* opt
  * and "plus", 2, the references of elements with lower and higher values; "isoref", 10, that of the
  * facets between them; "rmc", 0: parts of either side with less than this fraction of the volume
  * become part of the other; "keep_volume", 0: not 0, changes "ls" so that the elements of lower
- * values have this volume; "threads". `options` may be NULL. The vertices of the mesh before come
- * first. Adapted with "hausd" and without a geometry, the interface gets onto the curved surface of
+ * values have this volume; "lssurf", 0: 1 cuts only the triangles of the boundary of tetrahedra,
+ * which get references by side; "threads". `options` may be NULL. A surface alone is cut along
+ * edges. The vertices of the mesh before come first. Adapted with "hausd" and without a geometry, the interface gets onto the curved surface of
  * the function; without a metric, the sizes are those of the mesh before. ductile_mesh_report()
  * knows "level", "volume_below", "cut_elements", "moved_vertices" and "removed_components". */
 int ductile_cut(const ductile_mesh* mesh, const double* values, const ductile_options* options,

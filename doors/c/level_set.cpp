@@ -22,7 +22,7 @@ meshadapt::AnyField metric_before(const runtime::Executor& executor, const Cut& 
 meshadapt::AdaptOptions on_surface(const ductile_mesh& mesh, const ductile_options& options) {
   meshadapt::AdaptOptions adapt = options.adapt;
   if (!mesh.cut || adapt.make.hausdorff_tolerance <= 0 || adapt.make.geometry ||
-      mesh.cut->made.report.interface_facets == 0)
+      mesh.cut->made.report.interface_facets == 0 || mesh.cut->made.report.on_surface)
     return adapt;
   const Cut& cut = *mesh.cut;
   const meshadapt::LevelSetFunction function(runtime::Executor(options.executor), cut.before,

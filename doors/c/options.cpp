@@ -46,7 +46,7 @@ struct Named {
 using Options = ductile_options;
 using Text = std::string;
 
-constexpr std::array<Named, 25> all_options{{
+constexpr std::array<Named, 26> all_options{{
     {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
@@ -69,6 +69,7 @@ constexpr std::array<Named, 25> all_options{{
      [](Options& o, const Text& n, double x) { o.adapt.make.lock_boundary = flag(n, x); }},
     {"thorough", [](Options& o, const Text& n, double x) { o.adapt.thorough = flag(n, x); }},
     {"ls", [](Options& o, const Text&, double x) { o.cut.level = x; }},
+    {"lssurf", [](Options& o, const Text& n, double x) { o.cut.boundary_only = flag(n, x); }},
     {"rmc", [](Options& o, const Text&, double x) { o.cut.least_component = x; }},
     {"isoref", [](Options& o, const Text& n, double x) { o.cut.interface = reference(n, x); }},
     {"minus", [](Options& o, const Text& n, double x) { o.cut.minus = reference(n, x); }},

@@ -59,12 +59,12 @@ class Resolution {
         edges_(edges_near_zero()),
         value_in_(values_at(executor, function, middles(), Dim)) {}
 
-  /// Refines metrics at the ends of edges where the zero is not resolved. Are there any that the
-  /// metrics did not ask to be that short?
-  bool refine(std::vector<Metric<Dim>>& metric_of) const {
+  /// Refines metrics at the ends of edges where the zero is not resolved. Returns how far the
+  /// function is from linear, at most, on those that the metrics did not ask to be that short.
+  double refine(std::vector<Metric<Dim>>& metric_of) const {
     constexpr double finer = 1.2;  // of squared lengths
     std::vector<double> size_of(metric_of.size(), std::numeric_limits<double>::infinity());
-    bool any = false;
+    double farthest = 0;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       const double size = size_for(e);
       const Vector<Dim> along = direction(edges_[e]);
@@ -72,14 +72,14 @@ class Resolution {
       for (const VertexId v : edges_[e])
         if (square > finer * squared_length(metric_of[v], along)) {
           size_of[v] = std::min(size_of[v], size);
-          any = true;
+          farthest = std::max(farthest, off_at(e));
         }
     }
     runtime::parallel_for(executor_, metric_of.size(), [&](std::size_t v) {
       if (std::isfinite(size_of[v]))
         metric_of[v] = intersect(metric_of[v], isotropic<Dim>(size_of[v]));
     });
-    return any;
+    return farthest;
   }
 
  private:
@@ -135,32 +135,40 @@ class Resolution {
     return coordinates;
   }
 
-  /// Infinite where the edge may be as long as it is. An edge between ends of different signs is
-  /// divided by how far the function is from linear. One between ends of the same sign is halved if
-  /// the function has the other sign in the middle, or has a kink and, falling as steeply as around
-  /// there, could have it in one of the halves.
+  /// How far the zero may be from that of the linear interpolant, by the middle of an edge.
+  double off_at(std::size_t edge) const {
+    const auto [from, to] = edges_[edge];
+    const double steepest = std::max(steepest_of_[from], steepest_of_[to]);
+    const double linear = 0.5 * (value_of_[from] + value_of_[to]);
+    return steepest > 0 ? std::abs(value_in_[edge] - linear) / steepest : 0;
+  }
+
+  /// Infinite where the edge may be as long as it is: where the function is linear within the
+  /// tolerance, and where its halves would be below the smallest size, as in the end at kinks and
+  /// other singular points. Otherwise an edge between ends of different signs is divided by how far
+  /// the function is from linear. One between ends of the same sign is halved if the function has
+  /// the other sign in the middle, or has a kink and, falling as steeply as around there, could
+  /// have it in one of the halves.
   double size_for(std::size_t edge) const {
     constexpr double kink = 0.1;  // a bend of the function that is sharper, over the length
     constexpr double half = 0.4;  // because edges may become longer than the metric asks for
     const double infinite = std::numeric_limits<double>::infinity();
+    const double least = options_.smallest_size > 0 ? options_.smallest_size : options_.tolerance;
     const auto [from, to] = edges_[edge];
     const double a = value_of_[from], b = value_of_[to], middle = value_in_[edge];
     const double steepest = std::max(steepest_of_[from], steepest_of_[to]);
     const double length = norm(direction(edges_[edge]));
-    if (!(steepest > 0)) return infinite;
-    const double off = std::abs(middle - 0.5 * (a + b)) / steepest;
-    double share = 1;
+    const double off = off_at(edge);
+    if (off <= options_.tolerance || length < 2 * least) return infinite;
+    double share = half;
     if ((a < 0) != (b < 0)) {
-      if (off > options_.tolerance)
-        share = std::max(half, 2 * half * std::sqrt(options_.tolerance / off));
-    } else if ((middle < 0) != (a < 0)) {
-      share = half;
-    } else if (off > std::max(options_.tolerance, kink * length)) {
+      share = std::max(half, 2 * half * std::sqrt(options_.tolerance / off));
+    } else if ((middle < 0) == (a < 0)) {
       const double nearer = std::min(std::abs(a), std::abs(b));
-      if (nearer + std::abs(middle) <= 0.5 * steepest * length) share = half;
+      if (off <= kink * length || nearer + std::abs(middle) > 0.5 * steepest * length)
+        return infinite;
     }
-    const double least = options_.smallest_size > 0 ? options_.smallest_size : options_.tolerance;
-    return share < 1 ? std::max(least, share * length) : infinite;
+    return std::max(least, share * length);
   }
 
   const Executor& executor_;
@@ -177,18 +185,18 @@ struct Wanted {
   const PointFunction& function;
   const LevelSetSizesOptions& options;
 
-  bool refine(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
+  double refine(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
     return mesh.dimension == 2 ? refine_in<2>(executor, mesh, metric)
                                : refine_in<3>(executor, mesh, metric);
   }
 
  private:
   template <int Dim>
-  bool refine_in(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
+  double refine_in(const Executor& executor, const AnyMesh& mesh, AnyField& metric) const {
     auto metric_of = tensors_of<Dim>(executor, metric);
-    if (!Resolution<Dim>(executor, mesh, function, options).refine(metric_of)) return false;
-    metric = symmetric_field(executor, metric_of, metric.name);
-    return true;
+    const double off = Resolution<Dim>(executor, mesh, function, options).refine(metric_of);
+    if (off > 0) metric = symmetric_field(executor, metric_of, metric.name);
+    return off;
   }
 };
 
@@ -200,17 +208,18 @@ class LevelSetSizes : public MetricSource {
   const AnyField* next(const AdaptState& state) override {
     if (state.pass == 0) return &first_;
     metric_ = state.adapted().metric;
-    is_resolved_ = !wanted_.refine(state.executor, state.mesh(), metric_);
-    return is_resolved_ || state.pass >= wanted_.options.most_passes ? nullptr : &metric_;
+    off_ = wanted_.refine(state.executor, state.mesh(), metric_);
+    return off_ == 0 || state.pass >= wanted_.options.most_passes ? nullptr : &metric_;
   }
 
-  bool is_resolved() const { return is_resolved_; }
+  /// See Resolution::refine(), after the last pass.
+  double off() const { return off_; }
 
  private:
   const AnyField& first_;
   const Wanted& wanted_;
   AnyField metric_;
-  bool is_resolved_ = false;
+  double off_ = 0;
 };
 
 void expect_sizes(const PointFunction& function, const LevelSetSizesOptions& sizes) {
@@ -232,13 +241,14 @@ AdaptedMesh refine_to_level_set(const Executor& executor, const AnyMesh& mesh,
   AnyField finer =
       metric_of(metric, mesh, {options.adapt.smallest_size, options.adapt.largest_size});
   const Wanted wanted{function, options};
-  if (!wanted.refine(executor, mesh, finer)) return {mesh, finer, {}};
+  constexpr double far = 2;  // tolerances; each pass makes a few edges that are a little too long
+  if (wanted.refine(executor, mesh, finer) == 0) return {mesh, finer, {}};
   LevelSetSizes source(finer, wanted);
   AdaptedMesh adapted = adapt(executor, mesh, source, options.adapt);
-  if (!source.is_resolved())
+  if (source.off() > far * options.tolerance)
     adapted.report.warnings.push_back(name_of(mesh) + ": the level set is not resolved after " +
-                                      std::to_string(options.most_passes) +
-                                      " passes; allow more, or a larger tolerance");
+                                      std::to_string(options.most_passes) + " passes, but off by " +
+                                      number(source.off()) + "; allow more, or a larger tolerance");
   return adapted;
 }
 

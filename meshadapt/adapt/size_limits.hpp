@@ -5,6 +5,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/process.hpp"
@@ -80,6 +83,39 @@ std::vector<std::string> limit_growth(const runtime::Executor& executor,
   return warnings;
 }
 
+/// Makes metrics finer at vertices of facets whose SurfaceFunction has sizes.
+template <int Dim>
+void bound_sizes_by_functions(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                              std::span<const SurfaceFunction> functions,
+                              std::vector<Metric<Dim>>& metric_of) {
+  constexpr double most_finer = Dim == 2 ? 2.8 : 2;  // of squared lengths
+  std::vector<const SurfaceFunction*> of_patch(mesh.patches.size()), at(metric_of.size());
+  for (const SurfaceFunction& function : functions)
+    for (std::size_t p = 1; p < of_patch.size() && function.sizes; ++p)
+      if (mesh.patches[p].reference == function.reference) of_patch[p] = &function;
+  for (ElementId e = 0; e < mesh.element_slots() && !functions.empty(); ++e)
+    for (std::size_t i = 0; i <= Dim && mesh.alive(e); ++i)
+      if (const SurfaceFunction* function = of_patch[mesh.patches_of[e][i]])
+        for (const VertexId v : facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i)))
+          at[v] = function;
+  runtime::parallel_for(executor, at.size(), [&](std::size_t v) {
+    if (at[v] == nullptr) return;
+    std::array<double, 3> point{};
+    std::copy_n(mesh.site_of[v].position.x.begin(), Dim, point.begin());
+    Metric<Dim> sizes;
+    std::copy_n(at[v]->sizes(point).begin(), sizes.m.size(), sizes.m.begin());
+    PrincipalAxes<Dim> axes = principal_axes(sizes);
+    const double least = std::ranges::min(principal_axes(metric_of[v]).value);
+    bool binds = false;
+    for (std::size_t i = 0; i < Dim; ++i) {
+      const double asked = squared_length(metric_of[v], axes.vector[i]);
+      axes.value[i] = std::max(least, std::min(axes.value[i], most_finer * asked));
+      binds = binds || axes.value[i] > asked;
+    }
+    if (binds) metric_of[v] = intersect(metric_of[v], compose(axes));
+  });
+}
+
 /// Makes the metrics keep the bounds, the curvature of boundaries and the growth that the options
 /// allow. Returns sentences about what it could not do.
 template <int Dim, int Space>
@@ -89,6 +125,9 @@ std::vector<std::string> limit_sizes(const runtime::Executor& executor,
   bound_sizes(executor, metric_of, {options.smallest_size, options.largest_size});
   if (limits_growth(options) && mesh.surface)
     bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
+  if constexpr (Dim == Space)
+    if (limits_growth(options))
+      bound_sizes_by_functions<Dim>(executor, mesh, options.make.functions, metric_of);
   return limit_growth(executor, mesh, options, metric_of);
 }
 

@@ -39,7 +39,7 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 49> own_options{{
+constexpr std::array<Option, 50> own_options{{
     heading("Input and output"),
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
      "--out"},
@@ -80,6 +80,7 @@ constexpr std::array<Option, 49> own_options{{
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     heading("Level sets"),
     {"-ls", "[V]", "cuts the mesh first where -sol, a file or a field of MESH, is V (0)"},
+    {"-lssurf", "[V]", "the same for the triangles of the boundary alone, with references by side"},
     {"-rmc", "[X]", "with -ls, removes components with less than X of the volume (1e-5)"},
     {"-isoref", "N", "with -ls, facets where it is V get this reference (10)"},
     {"--keep-volume", "X", "with -ls, changes V so that the part below has this volume"},

@@ -56,10 +56,12 @@ void cut_input(const Executor& executor, AdaptJob& job, AdaptInput& input,
   meshadapt::CutMesh made = meshadapt::cut(executor, mesh, level_set.values, options);
   warnings.insert(warnings.end(), made.report.warnings.begin(), made.report.warnings.end());
   const double tolerance = job.adapt.make.hausdorff_tolerance;
-  if (tolerance > 0 && made.report.interface_facets > 0) {
+  const bool is_curve = made.report.on_surface;  // whose model is that of its edges
+  if (tolerance > 0 && made.report.interface_facets > 0 && !is_curve) {
     const meshadapt::LevelSetFunction function(executor, mesh, level_set.values, made.report.level);
     job.adapt.make.functions.push_back(function.surface(options.interface, tolerance));
-  } else if (tolerance == 0 && (job.adapt.insert || job.adapt.swap || job.adapt.move)) {
+  } else if (tolerance == 0 && !is_curve &&
+             (job.adapt.insert || job.adapt.swap || job.adapt.move)) {
     warnings.push_back(mesh.name +
                        ": the interface keeps the facets of the cut, bad elements among them; "
                        "-hausd X lets it be up to X from the surface of the level set");

@@ -15,11 +15,12 @@ using meshadapt::InputError;
 
 std::optional<LevelSetOption> level_set_option(const Arguments& arguments) {
   constexpr double mmgs_share = 1e-5;
-  if (!arguments.has("-ls")) {
-    if (arguments.has("--keep-volume"))
-      throw UsageError("option --keep-volume: expected -ls, which cuts the mesh, found none");
-    return std::nullopt;
-  }
+  const bool on_boundary = arguments.has("-lssurf");
+  if (!arguments.has("-ls") && arguments.has("--keep-volume"))
+    throw UsageError("option --keep-volume: expected -ls, which cuts the mesh, found none");
+  if (!arguments.has("-ls") && !on_boundary) return std::nullopt;
+  if (arguments.has("-ls") && on_boundary)
+    throw UsageError("options -ls and -lssurf: expected one of them, found both");
   if (arguments.has("-geometry"))
     throw UsageError(
         "options -ls and -geometry: expected one of them, found both; with -hausd the interface is "
@@ -28,7 +29,8 @@ std::optional<LevelSetOption> level_set_option(const Arguments& arguments) {
     return arguments.text(option).value_or("").empty() ? otherwise : *arguments.number(option);
   };
   LevelSetOption option;
-  option.cut.level = number_or("-ls", 0);
+  option.cut.level = number_or(on_boundary ? "-lssurf" : "-ls", 0);
+  option.cut.boundary_only = on_boundary;
   option.cut.keep_volume = arguments.positive("--keep-volume");
   if (arguments.has("-rmc")) option.cut.least_component = number_or("-rmc", mmgs_share);
   if (!(option.cut.least_component >= 0 && option.cut.least_component < 1))
@@ -100,7 +102,7 @@ CutInput cut_report(const LevelSetOption& option, const meshadapt::CutOptions& o
 
 std::string to_text(const CutInput& cut) {
   const meshadapt::CutReport& report = cut.report;
-  const bool in_plane = cut.before.dimension == 2;
+  const bool in_plane = cut.before.dimension == 2 || report.on_surface;
   std::string text = meshadapt::printable(cut.before.name + ": cut where " + cut.where) + ": " +
                      counted(report.cut_elements, "element", "elements") + " cut, " +
                      counted(report.moved_vertices, "vertex", "vertices") + " moved onto the " +

@@ -9,7 +9,6 @@ struct Refused {
 };
 constexpr std::array<Refused, 9> refused{{
     {"3dMedit", "Mmg's, not here: flat meshes of dimension 3 are read, and written in dimension 2"},
-    {"lssurf", "Mmg's, not here: -ls cuts the elements, not only the boundary"},
     {"nreg", "Mmg's, not here: normals are not smoothed"},
     {"nsd", "Mmg's, not here: the whole mesh is written"},
     {"optimLES", "Mmg's, not here: --thorough goes on for better shapes"},
@@ -38,7 +37,8 @@ std::string unneeded_mmg_options(const Arguments& arguments) {
     if (arguments.has(option.name)) add(option.name);
   if (arguments.has("-ar") && !arguments.has("-hausd")) add("-ar (without -hausd all edges stay)");
   for (const char* option : {"-isoref", "-rmc"})
-    if (arguments.has(option) && !arguments.has("-ls")) add(std::string(option) + " (without -ls)");
+    if (arguments.has(option) && !arguments.has("-ls") && !arguments.has("-lssurf"))
+      add(std::string(option) + " (without -ls)");
   if (list.empty()) return {};
   if (arguments.has("-nr") && arguments.has("-hausd"))
     list += " (no edge that turns by less than 90 degrees stays)";

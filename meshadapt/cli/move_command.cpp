@@ -272,10 +272,10 @@ int run(const Arguments& arguments) { return run_job(move_job(arguments)); }
 
 int run_lag(const Arguments& arguments) {
   for (const char* option :
-       {"--solution", "--elements",   "--recovery", "--near",       "--on",         "--inside",
-        "-f",         "-nomove",      "-noswap",    "-noinsert",    "-hausd",       "-geometry",
-        "-A",         "--iterations", "--thorough", "--by-colours", "--racing",     "--vtu",
-        "--join",     "-ls",          "-rmc",       "-isoref",      "--keep-volume"})
+       {"--solution", "--elements",   "--recovery", "--near",       "--on",     "--inside",
+        "-f",         "-nomove",      "-noswap",    "-noinsert",    "-hausd",   "-geometry",
+        "-A",         "--iterations", "--thorough", "--by-colours", "--racing", "--vtu",
+        "--join",     "-ls",          "-lssurf",    "-rmc",         "-isoref",  "--keep-volume"})
     if (arguments.has(option))
       throw UsageError(std::string("options -lag and ") + option +
                        ": expected one of them, found both");

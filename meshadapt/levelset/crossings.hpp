@@ -20,10 +20,10 @@ namespace ductile::meshadapt {
 /// The edges of split elements whose ends have values of different sign, sorted by their vertices.
 /// The function is linear along them. Thread safety of this and the following: one caller; runs on
 /// the executor.
-template <int Dim>
+template <int Dim, int Space>
 std::vector<Crossing> find_crossings(const runtime::Executor& executor,
-                                     const CutDomain<Dim>& domain,
-                                     std::span<const double> value_of) {
+                                     const CutDomain<Dim>& domain, std::span<const double> value_of,
+                                     const std::vector<Vector<Space>>& place_of) {
   auto keys = runtime::parallel_collect<std::uint64_t>(
       executor, domain.mesh.element_count(), [&](std::size_t e, auto&& append) {
         const Corners<Dim>& corners = domain.mesh.corners_of[e];
@@ -41,7 +41,7 @@ std::vector<Crossing> find_crossings(const runtime::Executor& executor,
   std::vector<Crossing> crossings(keys.size());
   runtime::parallel_for(executor, keys.size(), [&](std::size_t i) {
     const auto a = static_cast<VertexId>(keys[i] >> 32U), b = static_cast<VertexId>(keys[i]);
-    const Vector<Dim> along = domain.mesh.position_of[b] - domain.mesh.position_of[a];
+    const Vector<Space> along = place_of[b] - place_of[a];
     crossings[i] = {a, b, value_of[a] / (value_of[a] - value_of[b]), dot(along, along)};
   });
   return crossings;

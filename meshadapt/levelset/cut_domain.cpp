@@ -5,12 +5,13 @@
 #include <string>
 #include <utility>
 
+#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/marked_points.hpp"
-#include "mesh/neighbours.hpp"
+#include "mesh/adjacency.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -46,7 +47,7 @@ std::map<std::int32_t, std::uint32_t> materials_by_reference(std::span<const Cut
   return found;
 }
 
-template <int Dim>
+template <int Dim, int Space>
 class DomainMaker {
  public:
   DomainMaker(const Executor& executor, const AnyMesh& any, const CutOptions& options)
@@ -54,7 +55,7 @@ class DomainMaker {
 
   CutDomain<Dim> make() {
     check();
-    domain_.mesh = make_fixed_mesh<Dim>(executor_, any_);
+    make_elements();
     find_materials();
     find_listed_facets();
     domain_.is_ridge.assign(any_.edges.size(), 0);
@@ -66,11 +67,37 @@ class DomainMaker {
 
  private:
   void check() const {
-    check_input<Dim>(executor_, any_, {});
+    check_input<Dim, Space>(executor_, any_, {});
     for (const auto* list : {&any_.ridges, &any_.required_edges})
       marked(any_, any_.edges.size(), *list, "edge");
     marked(any_, any_.triangles.size(), any_.required_triangles, "triangle");
     marked(any_, any_.tetrahedra.size(), any_.required_tetrahedra, "tetrahedron");
+  }
+
+  void make_elements() {
+    if constexpr (Space == Dim)
+      domain_.mesh = make_fixed_mesh<Dim>(executor_, any_);
+    else
+      make_triangles();
+  }
+
+  /// The triangles of a surface, which stay turned as they are.
+  void make_triangles() {
+    FixedMesh<2>& mesh = domain_.mesh;
+    mesh.corners_of = any_.triangles.vertices;
+    mesh.position_of.resize(any_.vertex_count());
+    mesh.volume_of.resize(mesh.element_count());
+    parallel_for(executor_, mesh.element_count(), [&](std::size_t e) {
+      const auto at = [&](std::size_t i) { return position_in<3>(any_, mesh.corners_of[e][i]); };
+      mesh.volume_of[e] = 0.5 * norm(facet_normal(std::array{at(0), at(1), at(2)}));
+    });
+    const std::span<const Corners<2>> corners_of = mesh.corners_of;
+    auto adjacency = make_adjacency<2>(
+        executor_, corners_of, list_elements<2>(executor_, corners_of, any_.vertex_count()));
+    mesh.first_around = std::move(adjacency.first_around);
+    mesh.around = std::move(adjacency.around);
+    mesh.neighbour_of = std::move(adjacency.neighbour_of);
+    for (auto& neighbours : mesh.neighbour_of) std::ranges::replace(neighbours, crowded, none);
   }
 
   void find_materials() {
@@ -172,15 +199,16 @@ std::span<const ListedSpoke> CutDomain<Dim>::spokes_of(VertexId vertex) const {
   return {first, last};
 }
 
-template <int Dim>
+template <int Dim, int Space>
 CutDomain<Dim> make_cut_domain(const Executor& executor, const AnyMesh& mesh,
                                const CutOptions& options) {
-  return DomainMaker<Dim>(executor, mesh, options).make();
+  return DomainMaker<Dim, Space>(executor, mesh, options).make();
 }
 
 template struct CutDomain<2>;
 template struct CutDomain<3>;
-template CutDomain<2> make_cut_domain(const Executor&, const AnyMesh&, const CutOptions&);
-template CutDomain<3> make_cut_domain(const Executor&, const AnyMesh&, const CutOptions&);
+template CutDomain<2> make_cut_domain<2, 2>(const Executor&, const AnyMesh&, const CutOptions&);
+template CutDomain<2> make_cut_domain<2, 3>(const Executor&, const AnyMesh&, const CutOptions&);
+template CutDomain<3> make_cut_domain<3, 3>(const Executor&, const AnyMesh&, const CutOptions&);
 
 }  // namespace ductile::meshadapt

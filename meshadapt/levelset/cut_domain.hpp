@@ -1,6 +1,6 @@
 /// @file
 /// CutDomain<Dim>: a mesh about to be cut: its elements by material, its listed facets and edges,
-/// and what its vertices must stay on.
+/// and what its vertices must stay on. A surface alone has Dim 2.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct ListedSpoke {
 template <int Dim>
 struct CutDomain {
   const AnyMesh& any;
-  FixedMesh<Dim> mesh;                     // its positions change as vertices are moved
+  FixedMesh<Dim> mesh;                     // of a surface it has no positions and shares
   std::vector<CutMaterial> materials;      // at least one
   std::vector<std::uint32_t> material_of;  // [element]
   std::vector<std::array<std::uint32_t, Dim + 1>> listed_of;  // [element][facet], 1 + the listed
@@ -50,15 +50,17 @@ struct CutDomain {
 
 /// Throws InputError as cut() does for meshes and materials. Thread safety: one caller; runs on the
 /// executor.
-template <int Dim>
+template <int Dim, int Space>
 CutDomain<Dim> make_cut_domain(const runtime::Executor& executor, const AnyMesh& mesh,
                                const CutOptions& options);
 
 extern template struct CutDomain<2>;
 extern template struct CutDomain<3>;
-extern template CutDomain<2> make_cut_domain(const runtime::Executor&, const AnyMesh&,
-                                             const CutOptions&);
-extern template CutDomain<3> make_cut_domain(const runtime::Executor&, const AnyMesh&,
-                                             const CutOptions&);
+extern template CutDomain<2> make_cut_domain<2, 2>(const runtime::Executor&, const AnyMesh&,
+                                                   const CutOptions&);
+extern template CutDomain<2> make_cut_domain<2, 3>(const runtime::Executor&, const AnyMesh&,
+                                                   const CutOptions&);
+extern template CutDomain<3> make_cut_domain<3, 3>(const runtime::Executor&, const AnyMesh&,
+                                                   const CutOptions&);
 
 }  // namespace ductile::meshadapt

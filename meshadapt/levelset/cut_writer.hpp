@@ -1,5 +1,6 @@
 /// @file
-/// CutWriter<Dim>: makes the cut mesh from the mesh before and the snapped surface.
+/// CutWriter<Dim, Space>: makes the cut mesh from the mesh before and the snapped surface. With
+/// Dim 2 and Space 3 that is a surface alone, or the boundary of tetrahedra with these.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +17,20 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+/// The volume of an element, 2D: its area.
+template <int Dim, int Space>
+double volume_of_simplex(const std::array<Vector<Space>, Dim + 1>& p) {
+  if constexpr (Space == Dim)
+    return plain_determinant(p) / (Dim == 2 ? 2 : 6);
+  else
+    return 0.5 * norm(facet_normal(p));
+}
+
+template <int Dim, int Space>
 class CutWriter {
  public:
-  CutWriter(const runtime::Executor& executor, const CutDomain<Dim>& domain, const Snapped& snapped)
+  CutWriter(const runtime::Executor& executor, const CutDomain<Dim>& domain,
+            const Snapped<Space>& snapped)
       : executor_(executor),
         domain_(domain),
         snapped_(snapped),
@@ -28,18 +39,29 @@ class CutWriter {
   /// New facets on the surface get the reference `interface`. Throws InputError if something
   /// required is cut. Thread safety: one caller; runs on the executor.
   CutMesh write(std::int32_t interface) {
-    made_.mesh.dimension = Dim;
-    made_.mesh.names = any_.names;
-    made_.mesh.name = any_.name;
-    made_.mesh.dropped_axis = any_.dropped_axis;
-    made_.mesh.corners = any_.corners;
-    made_.mesh.required_vertices = any_.required_vertices;
-    made_.report.moved_vertices = snapped_.moved;
-    made_.report.taken_vertices = snapped_.taken;
-    write_vertices();
-    write_elements();
-    write_facets(interface);
-    if constexpr (Dim == 3) write_edges();
+    write_domain(interface);
+    return std::move(made_);
+  }
+
+  /// The same for tetrahedra of which the domain is the listed facets: they keep their references.
+  CutMesh write_with_tetrahedra(const AnyMesh& whole,
+                                std::int32_t interface) requires(Dim < Space) {
+    const auto mesh = make_fixed_mesh<3>(executor_, whole);
+    write_domain(interface);
+    auto cells = divided<4>(mesh.corners_of, whole.tetrahedra.reference, {});
+    const std::size_t flat = first_bad(executor_, cells.origin.size(), [&](std::size_t i) {
+      return orientation<3>(divider_.places(snapped_.place_of, cells.cells.vertices[i])) <= 0;
+    });
+    if (flat != no_index)
+      refuse(name_of(whole) + ": " +
+             entry(elements_array<3>(), element_name<3>(), cells.origin[flat]) +
+             " is too flat to be cut; remove or repair it");
+    made_.mesh.required_tetrahedra =
+        required(cells, whole.required_tetrahedra, elements_array<3>(), element_name<3>());
+    made_.report.cut_elements = count_cut(cells, mesh.element_count());
+    made_.facet_origin = std::move(made_.element_origin);
+    made_.element_origin = std::move(cells.origin);
+    made_.mesh.tetrahedra = std::move(cells.cells);
     return std::move(made_);
   }
 
@@ -54,17 +76,32 @@ class CutWriter {
     bool is_cut(std::size_t i) const { return first[i + 1] - first[i] > 1; }
   };
 
+  void write_domain(std::int32_t interface) {
+    made_.mesh.dimension = Space;
+    made_.mesh.names = any_.names;
+    made_.mesh.name = any_.name;
+    made_.mesh.dropped_axis = any_.dropped_axis;
+    made_.mesh.corners = any_.corners;
+    made_.mesh.required_vertices = any_.required_vertices;
+    made_.report.moved_vertices = snapped_.moved;
+    made_.report.taken_vertices = snapped_.taken;
+    write_vertices();
+    write_elements();
+    write_facets(interface);
+    if constexpr (Dim == 3) write_edges();
+  }
+
   void write_vertices() {
     const std::size_t before = any_.vertex_count(), all = before + snapped_.crossings.size();
     made_.mesh.vertex_reference = any_.vertex_reference;
     made_.mesh.vertex_reference.resize(all, 0);
-    made_.mesh.coordinates.resize(Dim * all);
+    made_.mesh.coordinates.resize(Space * all);
     made_.vertex_origin = snapped_.origin_of;
     for (const auto& [a, b, t, square] : snapped_.crossings)
       made_.vertex_origin.push_back({a, b, t});
     runtime::parallel_for(executor_, all, [&](std::size_t v) {
-      const Vector<Dim> place = divider_.place(domain_, static_cast<VertexId>(v));
-      std::copy_n(place.x.begin(), Dim, &made_.mesh.coordinates[Dim * v]);
+      const Vector<Space> place = divider_.place(snapped_.place_of, static_cast<VertexId>(v));
+      std::copy_n(place.x.begin(), Space, &made_.mesh.coordinates[Space * v]);
     });
   }
 
@@ -96,6 +133,13 @@ class CutWriter {
       }
     });
     return made;
+  }
+
+  template <std::size_t N>
+  static std::size_t count_cut(const Divided<N>& cells, std::size_t count) {
+    std::size_t cut = 0;
+    for (std::size_t i = 0; i < count; ++i) cut += cells.is_cut(i);
+    return cut;
   }
 
   /// The pieces of some cells, by their indices.
@@ -131,17 +175,7 @@ class CutWriter {
     (Dim == 2 ? made_.mesh.required_triangles : made_.mesh.required_tetrahedra) =
         required(elements, Dim == 2 ? any_.required_triangles : any_.required_tetrahedra,
                  elements_array<Dim>(), element_name<Dim>());
-    made_.report.minus_volume = runtime::parallel_reduce(
-        executor_, elements.origin.size(), 0.0,
-        [&](std::size_t i) {
-          return is_below(elements, i)
-                     ? plain_determinant(divider_.places(domain_, elements.cells.vertices[i])) /
-                           (Dim == 2 ? 2 : 6)
-                     : 0.0;
-        },
-        [](double a, double b) { return a + b; });
-    for (std::size_t e = 0; e < domain_.mesh.element_count(); ++e)
-      made_.report.cut_elements += elements.is_cut(e);
+    made_.report.cut_elements = count_cut(elements, domain_.mesh.element_count());
     find_interface(elements);
     elements_in<Dim>(made_.mesh) = std::move(elements.cells);
     made_.element_origin = std::move(elements.origin);
@@ -196,7 +230,7 @@ class CutWriter {
   const runtime::Executor& executor_;
   const CutDomain<Dim>& domain_;
   const AnyMesh& any_ = domain_.any;
-  const Snapped& snapped_;
+  const Snapped<Space>& snapped_;
   Divider divider_;
   runtime::UnsetVector<Facet<Dim>> interface_;
   CutMesh made_;

@@ -83,19 +83,19 @@ class Divider {
     return 0;
   }
 
-  template <int Dim>
-  Vector<Dim> place(const CutDomain<Dim>& domain, VertexId vertex) const {
-    const auto& position_of = domain.mesh.position_of;
-    if (vertex < sign_of_.size()) return position_of[vertex];
+  /// Where a vertex is, also a new one; place_of[vertex] has the others.
+  template <int Space>
+  Vector<Space> place(const std::vector<Vector<Space>>& place_of, VertexId vertex) const {
+    if (vertex < sign_of_.size()) return place_of[vertex];
     const Crossing& edge = crossings_[vertex - sign_of_.size()];
-    return position_of[edge.a] + edge.t * (position_of[edge.b] - position_of[edge.a]);
+    return place_of[edge.a] + edge.t * (place_of[edge.b] - place_of[edge.a]);
   }
 
-  template <int Dim>
-  std::array<Vector<Dim>, Dim + 1> places(const CutDomain<Dim>& domain,
-                                          const Corners<Dim>& corners) const {
-    std::array<Vector<Dim>, Dim + 1> result;
-    for (std::size_t i = 0; i <= Dim; ++i) result[i] = place(domain, corners[i]);
+  template <int Space, std::size_t Corners>
+  std::array<Vector<Space>, Corners> places(const std::vector<Vector<Space>>& place_of,
+                                            const std::array<VertexId, Corners>& cell) const {
+    std::array<Vector<Space>, Corners> result;
+    for (std::size_t i = 0; i < Corners; ++i) result[i] = place(place_of, cell[i]);
     return result;
   }
 

@@ -34,6 +34,8 @@ void expect_options(const CutOptions& options) {
     throw InputError(
         "least_component: expected a fraction of the volume, from 0 to below 1, found " +
         number(options.least_component));
+  if (options.boundary_only && options.keep_volume)
+    throw InputError("keep_volume: expected none where only the boundary is cut");
 }
 
 void expect_cut_values(const Executor& executor, const AnyMesh& mesh,
@@ -49,16 +51,18 @@ void expect_cut_values(const Executor& executor, const AnyMesh& mesh,
            entry("values", "vertex", bad));
 }
 
-template <int Dim>
+/// Cuts a mesh, or a surface alone, which has Dim 2 and Space 3.
+template <int Dim, int Space = Dim>
 class Cutter {
  public:
-  Cutter(const Executor& executor, const AnyMesh& mesh, std::span<const double> values,
-         const CutOptions& options)
+  /// `whole`: has the tetrahedra of which the mesh is the listed facets, if it is not the mesh.
+  Cutter(const Executor& executor, const AnyMesh& mesh, const AnyMesh& whole,
+         std::span<const double> values, const CutOptions& options)
       : executor_(executor),
+        whole_(whole),
         values_(values),
         options_(options),
-        domain_(make_cut_domain<Dim>(executor, mesh, options)),
-        position_of_(domain_.mesh.position_of),
+        domain_(make_cut_domain<Dim, Space>(executor, mesh, options)),
         whole_volume_(
             std::accumulate(domain_.mesh.volume_of.begin(), domain_.mesh.volume_of.end(), 0.0)) {}
 
@@ -68,34 +72,70 @@ class Cutter {
   }
 
  private:
-  CutMesh at_level(double level) {
-    domain_.mesh.position_of = position_of_;
+  CutMesh at_level(double level) const {
     std::vector<double> function(values_.size());
     parallel_for(executor_, function.size(),
                  [&](std::size_t v) { function[v] = values_[v] - level; });
     std::vector<double> value_of = function;  // without zeros and small parts
     const auto removed =
         choose_sides(executor_, domain_, value_of, options_.least_component * whole_volume_);
-    Snapped snapped{std::vector<std::int8_t>(value_of.size()),
-                    std::vector<VertexOrigin>(value_of.size()),
-                    find_crossings<Dim>(executor_, domain_, value_of)};
-    parallel_for(executor_, value_of.size(), [&](std::size_t v) {
-      const auto vertex = static_cast<VertexId>(v);
-      snapped.sign_of[v] = value_of[v] < 0 ? -1 : 1;
-      snapped.origin_of[v] = {vertex, vertex, 0};
-    });
-    if (options_.curved) bend_crossings<Dim>(executor_, domain_, function, snapped.crossings);
+    Snapped<Space> snapped = unsnapped(value_of);
+    if constexpr (Space == Dim)
+      if (options_.curved) bend_crossings<Dim>(executor_, domain_, function, snapped.crossings);
     const bool is_met = !snapped.crossings.empty();
-    Snapping<Dim>(executor_, domain_, snapped).run();
-    CutMesh made = CutWriter<Dim>(executor_, domain_, snapped).write(options_.interface);
+    Snapping<Dim, Space>(executor_, domain_, snapped).run();
+    CutMesh made = written(snapped);
     made.value.resize(made.mesh.vertex_count());
     parallel_for(executor_, value_of.size(),
                  [&](std::size_t v) { made.value[v] = snapped.sign_of[v] == 0 ? 0 : value_of[v]; });
     made.report.level = level;
+    made.report.on_surface = Dim < Space;
+    made.report.minus_volume = minus_volume(made);
     made.report.removed_components = removed.count;
     made.report.removed_volume = removed.volume;
     if (!is_met) made.report.warnings.push_back(never_met(level, removed.count));
     return made;
+  }
+
+  Snapped<Space> unsnapped(const std::vector<double>& value_of) const {
+    const std::size_t count = value_of.size();
+    Snapped<Space> snapped;
+    snapped.place_of.resize(count);
+    snapped.sign_of.resize(count);
+    snapped.origin_of.resize(count);
+    parallel_for(executor_, count, [&](std::size_t v) {
+      const auto vertex = static_cast<VertexId>(v);
+      snapped.place_of[v] = position_in<Space>(domain_.any, v);
+      snapped.sign_of[v] = value_of[v] < 0 ? -1 : 1;
+      snapped.origin_of[v] = {vertex, vertex, 0};
+    });
+    snapped.crossings = find_crossings<Dim>(executor_, domain_, value_of, snapped.place_of);
+    return snapped;
+  }
+
+  CutMesh written(const Snapped<Space>& snapped) const {
+    CutWriter<Dim, Space> writer(executor_, domain_, snapped);
+    if constexpr (Dim < Space)
+      if (whole_.tetrahedra.size() > 0)
+        return writer.write_with_tetrahedra(whole_, options_.interface);
+    return writer.write(options_.interface);
+  }
+
+  double minus_volume(const CutMesh& made) const {
+    const auto& corners_of = elements_in<Dim>(made.mesh).vertices;
+    const auto& origin_of = options_.boundary_only ? made.facet_origin : made.element_origin;
+    return runtime::parallel_reduce(
+        executor_, corners_of.size(), 0.0,
+        [&](std::size_t e) {
+          if (!domain_.is_split(origin_of[e]) ||
+              !std::ranges::any_of(corners_of[e], [&](VertexId v) { return made.value[v] < 0; }))
+            return 0.0;
+          std::array<Vector<Space>, Dim + 1> points;
+          for (std::size_t i = 0; i <= Dim; ++i)
+            points[i] = position_in<Space>(made.mesh, corners_of[e][i]);
+          return volume_of_simplex<Dim, Space>(points);
+        },
+        [](double a, double b) { return a + b; });
   }
 
   std::string never_met(double level, std::size_t removed) const {
@@ -108,20 +148,22 @@ class Cutter {
 
   // ---- To a volume ----
 
+  static constexpr double close = 1e-6;  // of the volume
+
   /// Cuts at the level where the linear interpolant has the volume, and again at one where it has
-  /// as much more as the cut mesh had less.
-  CutMesh at_volume(double wanted) {
+  /// as much more as the cut mesh had less; each cut may snap other vertices, so that its volume
+  /// jumps. The best of these cuts is then moved to the volume.
+  CutMesh at_volume(double wanted) const {
     constexpr int most_cuts = 4;
-    constexpr double close = 1e-6;  // of the volume
+    constexpr double near = 1e-3;  // of the volume
     const double all =
         volume_below(executor_, domain_, values_, std::numeric_limits<double>::infinity());
     if (!(wanted > 0 && wanted < all))
       throw InputError("keep_volume: expected one between 0 and that of the elements to split, " +
                        number(all) + ", found " + number(wanted));
-    double aim = wanted;
+    double aim = wanted, best_error = std::numeric_limits<double>::infinity();
     CutMesh best;
-    double best_error = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < most_cuts && best_error > close * wanted; ++i) {
+    for (int i = 0; i < most_cuts && best_error > near * wanted; ++i) {
       CutMesh made = at_level(level_of_volume(aim));
       const double error = wanted - made.report.minus_volume;
       aim = std::clamp(aim + error, 1e-6 * all, (1 - 1e-6) * all);
@@ -129,6 +171,12 @@ class Cutter {
       best_error = std::abs(error);
       best = std::move(made);
     }
+    move_to_volume(best, wanted);
+    if (std::abs(best.report.minus_volume - wanted) > close * wanted)
+      best.report.warnings.push_back(
+          name_of(domain_.any) + ": the part below has the volume " +
+          number(best.report.minus_volume) + ", not " + number(wanted) +
+          ": no level gives that with this topology; refine the mesh, or change keep_volume");
     return best;
   }
 
@@ -143,13 +191,105 @@ class Cutter {
     return low + (high - low) / 2;
   }
 
+  /// Changes the level of a cut by a little, with the same vertices on the surface: they move along
+  /// the edges that they come from, until the volume is within `close` of the wanted one. The level
+  /// passes no value of another vertex, so the topology stays that of the interpolant.
+  void move_to_volume(CutMesh& made, double wanted) const {
+    constexpr int most_steps = 60;
+    const CutMesh before = made;
+    const auto [least, most] = std::minmax_element(values_.begin(), values_.end());
+    double low = *least - *most, high = -low;
+    for (const double value : made.value) {
+      if (value < 0) low = std::max(low, 0.9 * value);
+      if (value > 0) high = std::min(high, 0.9 * value);
+    }
+    double low_error = shift(made, before, low) - wanted;
+    double high_error = shift(made, before, high) - wanted;
+    double error = before.report.minus_volume - wanted, by = 0;
+    for (int i = 0; std::abs(error) > close * wanted; ++i) {
+      if (!(low_error < 0 && high_error > 0) || i == most_steps) break;
+      (error < 0 ? low : high) = by;
+      (error < 0 ? low_error : high_error) = error;
+      // Every third step halves, because one end may stay where it is.
+      by = low + (i % 3 == 2 ? 0.5 : low_error / (low_error - high_error)) * (high - low);
+      error = shift(made, before, by) - wanted;
+    }
+    if (!(std::abs(error) < std::abs(before.report.minus_volume - wanted)) || !is_valid(made))
+      made = before;
+    else
+      finish_shift(made, by);
+  }
+
+  /// Places the vertices on the surface where the function is by this much more than at the cut
+  /// before. Returns the volume below.
+  double shift(CutMesh& made, const CutMesh& before, double by) const {
+    constexpr double least_part = 0.04;
+    const double level = before.report.level;
+    parallel_for(executor_, made.vertex_origin.size(), [&](std::size_t v) {
+      const auto& [a, b, t] = before.vertex_origin[v];
+      const double from = values_[a] - level, to = values_[b] - level;
+      if (a == b || !(from * to < 0)) return;
+      const double moved =
+          std::clamp(t + by / (to - from), std::min(t, least_part), std::max(t, 1 - least_part));
+      const auto end = position_in<Space>(domain_.any, a),
+                 along = position_in<Space>(domain_.any, b) - end;
+      const Vector<Space> place = end + moved * along;
+      std::copy_n(place.x.begin(), Space, &made.mesh.coordinates[Space * v]);
+      made.vertex_origin[v].t = moved;
+    });
+    return minus_volume(made);
+  }
+
+  bool is_valid(const CutMesh& made) const {
+    if constexpr (Space == Dim) {
+      const auto& corners_of = elements_in<Dim>(made.mesh).vertices;
+      return first_bad(executor_, corners_of.size(), [&](std::size_t e) {
+               std::array<Vector<Space>, Dim + 1> points;
+               for (std::size_t i = 0; i <= Dim; ++i)
+                 points[i] = position_in<Space>(made.mesh, corners_of[e][i]);
+               return orientation<Dim>(points) <= 0;
+             }) == no_index;
+    }
+    return true;
+  }
+
+  void finish_shift(CutMesh& made, double by) const {
+    made.report.level += by;
+    made.report.minus_volume = minus_volume(made);
+    for (double& value : made.value)
+      if (value != 0) value -= by;
+  }
+
   const Executor& executor_;
+  const AnyMesh& whole_;
   std::span<const double> values_;
   const CutOptions& options_;
   CutDomain<Dim> domain_;
-  std::vector<Vector<Dim>> position_of_;  // [vertex], before vertices are moved
   double whole_volume_;
 };
+
+/// The listed facets of tetrahedra, as a surface alone.
+AnyMesh boundary_of(const AnyMesh& mesh) {
+  if (mesh.tetrahedra.size() == 0 || mesh.triangles.size() == 0)
+    throw InputError(name_of(mesh) +
+                     ": expected tetrahedra and triangles, which alone are to be cut, found " +
+                     (mesh.tetrahedra.size() == 0 ? "no tetrahedra" : "no triangles"));
+  AnyMesh boundary = mesh;
+  boundary.tetrahedra = {};
+  boundary.required_tetrahedra.clear();
+  return boundary;
+}
+
+CutMesh cut_any(const Executor& executor, const AnyMesh& mesh, std::span<const double> values,
+                const CutOptions& options) {
+  if (options.boundary_only) {
+    const AnyMesh boundary = boundary_of(mesh);
+    return Cutter<2, 3>(executor, boundary, mesh, values, options).run();
+  }
+  if (is_surface(mesh)) return Cutter<2, 3>(executor, mesh, mesh, values, options).run();
+  return mesh.dimension == 2 ? Cutter<2>(executor, mesh, mesh, values, options).run()
+                             : Cutter<3>(executor, mesh, mesh, values, options).run();
+}
 
 /// Throws unless the field has a value for each vertex of the mesh before.
 void expect_field_before(const AnyField& field, const CutMesh& cut) {
@@ -184,10 +324,7 @@ CutMesh cut(const Executor& executor, const AnyMesh& mesh, std::span<const doubl
   expect_options(options);
   expect_coordinates(mesh);
   expect_cut_values(executor, mesh, values);
-  return runtime::with_team(executor, [&] {
-    return mesh.dimension == 2 ? Cutter<2>(executor, mesh, values, options).run()
-                               : Cutter<3>(executor, mesh, values, options).run();
-  });
+  return runtime::with_team(executor, [&] { return cut_any(executor, mesh, values, options); });
 }
 
 AnyField field_at_cut(const Executor& executor, const AnyField& field, const CutMesh& cut) {

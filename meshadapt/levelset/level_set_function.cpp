@@ -1,5 +1,6 @@
 #include "ductile/meshadapt/level_set_function.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -57,18 +58,30 @@ std::vector<double> values_at(const Executor& executor, const QuadraticBlend<Dim
 }
 
 template <int Dim>
+Vector<Dim> point_of(const std::array<double, 3>& from) {
+  Vector<Dim> point;
+  std::copy_n(from.begin(), Dim, point.x.begin());
+  return point;
+}
+
+template <int Dim>
 SurfaceFunction surface_of(std::shared_ptr<const QuadraticBlend<Dim>> blend, std::int32_t reference,
                            double within) {
-  const auto closest = [blend = std::move(blend), within](const std::array<double, 3>& from) {
-    Vector<Dim> point;
-    std::copy_n(from.begin(), Dim, point.x.begin());
+  constexpr double share = Dim == 2 ? 0.25 : 0.4;
+  const auto closest = [blend, within](const std::array<double, 3>& from) {
     std::array<double, 3> result{};
-    const auto found = blend->closest(point, within);
+    const auto found = blend->closest(point_of<Dim>(from), within);
     if (!found) result.fill(std::nan(""));
     if (found) std::copy_n(found->x.begin(), Dim, result.begin());
     return result;
   };
-  return {reference, closest, true};
+  const auto sizes = [blend, within](const std::array<double, 3>& at) {
+    std::array<double, 6> result{};
+    const Metric<Dim> chords = blend->chords(point_of<Dim>(at), share * within);
+    std::copy_n(chords.m.begin(), chords.m.size(), result.begin());
+    return result;
+  };
+  return {reference, closest, true, sizes};
 }
 
 }  // namespace

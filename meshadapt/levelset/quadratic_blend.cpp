@@ -111,6 +111,36 @@ std::optional<Vector<Dim>> QuadraticBlend<Dim>::closest(const Vector<Dim>& point
   return {};
 }
 
+template <int Dim>
+Metric<Dim> QuadraticBlend<Dim>::chords(const Vector<Dim>& point, double distance) const {
+  constexpr double least_turn = 0.7;  // cosine of the angle between gradients across a kink
+  const Sample here = at(point, none);
+  const double slope = norm(here.gradient);
+  if (!(slope > 0)) return {};
+  const Vector<Dim> normal = (1 / slope) * here.gradient;
+  const double step = 0.5 * std::pow(mesh_.volume_of[here.element], 1.0 / Dim);
+  const auto flat = [&](const Vector<Dim>& d) { return d - dot(d, normal) * normal; };
+  Metric<Dim> bend;
+  for (int i = 0; i < Dim; ++i) {
+    Vector<Dim> axis;
+    axis[i] = 1;
+    const Vector<Dim> along = flat(axis);
+    const Vector<Dim> ahead = at(point + step * along, here.element).gradient;
+    const Vector<Dim> behind = at(point - step * along, here.element).gradient;
+    if (dot(ahead, behind) < least_turn * norm(ahead) * norm(behind)) return {};
+    const Vector<Dim> turn = flat((1 / (2 * step * slope)) * (ahead - behind));
+    for (int j = 0; j <= i; ++j) bend.m[static_cast<std::size_t>(i * (i + 1) / 2 + j)] += turn[j];
+  }
+  PrincipalAxes<Dim> axes = principal_axes(bend);
+  double most = 0;
+  const double finest = 1 / (16 * distance * distance);
+  for (double& value : axes.value)
+    most = std::max(most, value = std::min(std::abs(value) / (8 * distance), finest));
+  for (std::size_t i = 0; i < Dim; ++i)
+    if (std::abs(dot(axes.vector[i], normal)) > least_turn) axes.value[i] = most;
+  return compose(axes);
+}
+
 template class QuadraticBlend<2>;
 template class QuadraticBlend<3>;
 

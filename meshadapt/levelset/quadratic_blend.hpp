@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "mesh/box.hpp"
@@ -36,6 +37,11 @@ class QuadraticBlend {
 
   /// The closest point of the zero, nearly; nothing if none is found within a distance.
   std::optional<Vector<Dim>> closest(const Vector<Dim>& point, double within) const;
+
+  /// The tensor that asks for chords of the level set through a point no farther than a distance
+  /// from it: k h^2 / 8 for one of length h, k its curvature in that direction; across it as in the
+  /// direction that bends most. Not shorter than four distances; 0 where the function has a kink.
+  Metric<Dim> chords(const Vector<Dim>& point, double distance) const;
 
  private:
   bool is_near_zero(VertexId vertex) const;

@@ -24,8 +24,9 @@ struct Spoke {
 template <int Dim>
 class Slide {
  public:
-  Slide(const CutDomain<Dim>& domain, VertexId vertex, VertexId towards)
-      : domain_(domain), vertex_(vertex), towards_(towards) {}
+  Slide(const CutDomain<Dim>& domain, const std::vector<Vector<Dim>>& place_of, VertexId vertex,
+        VertexId towards)
+      : domain_(domain), place_of_(place_of), vertex_(vertex), towards_(towards) {}
 
   /// True if each facet is flat in the direction of the other vertex, and so is the curve, if any.
   bool is_allowed() {
@@ -52,9 +53,7 @@ class Slide {
   /// Sine of an angle that rounding may explain.
   static constexpr double flat = 1e-9;
 
-  Vector<Dim> to(VertexId v) const {
-    return domain_.mesh.position_of[v] - domain_.mesh.position_of[vertex_];
-  }
+  Vector<Dim> to(VertexId v) const { return place_of_[v] - place_of_[vertex_]; }
 
   Spoke& spoke(VertexId end, std::int64_t kind) {
     const auto at = std::ranges::find(spokes_, end, &Spoke::end);
@@ -105,14 +104,16 @@ class Slide {
   }
 
   const CutDomain<Dim>& domain_;
+  const std::vector<Vector<Dim>>& place_of_;
   VertexId vertex_, towards_;
   std::vector<Spoke> spokes_;
 };
 
 /// See the top of this file. Thread safety: any thread.
 template <int Dim>
-bool may_slide(const CutDomain<Dim>& domain, VertexId vertex, VertexId towards) {
-  return Slide<Dim>(domain, vertex, towards).is_allowed();
+bool may_slide(const CutDomain<Dim>& domain, const std::vector<Vector<Dim>>& place_of,
+               VertexId vertex, VertexId towards) {
+  return Slide<Dim>(domain, place_of, vertex, towards).is_allowed();
 }
 
 }  // namespace ductile::meshadapt

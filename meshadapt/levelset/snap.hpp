@@ -1,5 +1,6 @@
 /// @file
-/// Snapping<Dim>: puts vertices near the surface onto it, so that no edge is cut close to its end.
+/// Snapping<Dim, Space>: puts vertices near the surface onto it, so that no edge is cut close to
+/// its end. Vertices of a surface alone, where Space is more than Dim, stay where they are.
 #pragma once
 
 #include <algorithm>
@@ -24,18 +25,19 @@
 namespace ductile::meshadapt {
 
 /// The surface as vertices and edges see it.
+template <int Space>
 struct Snapped {
+  std::vector<Vector<Space>> place_of;  // [vertex]
   std::vector<std::int8_t> sign_of;     // [vertex] -1, 1, or 0 on the surface
   std::vector<VertexOrigin> origin_of;  // [vertex]
   std::vector<Crossing> crossings;      // sorted by their vertices
   std::size_t moved = 0, taken = 0;     // vertices, see CutReport
 };
 
-template <int Dim>
+template <int Dim, int Space>
 class Snapping {
  public:
-  /// Moves vertices of the domain.
-  Snapping(const runtime::Executor& executor, CutDomain<Dim>& domain, Snapped& snapped)
+  Snapping(const runtime::Executor& executor, const CutDomain<Dim>& domain, Snapped<Space>& snapped)
       : executor_(executor),
         domain_(domain),
         snapped_(snapped),
@@ -50,14 +52,15 @@ class Snapping {
     for (const auto& [a, b, t, square] : snapped_.crossings)
       candidates.push_back(t < 0.5 ? Candidate{t, a, b} : Candidate{1 - t, b, a});
     runtime::parallel_sort<Candidate>(executor_, candidates);
-    for (const Candidate& c : candidates)
-      if (are_open(c.near, c.far) && (c.t < most_moved || is_close_[c.near] != 0)) move(c);
+    if constexpr (Space == Dim)
+      for (const Candidate& c : candidates)
+        if (are_open(c.near, c.far) && (c.t < most_moved || is_close_[c.near] != 0)) move(c);
     for (const Candidate& c : candidates)
       if (are_open(c.near, c.far) && c.t < least_part / 2 && is_disc(c.near)) take(c.near);
     drop_closed();
     for (auto& [a, b, t, square] : snapped_.crossings)
       t = std::clamp(t, least_part_at(a), 1 - least_part_at(b));
-    make_volumes_certain();
+    if constexpr (Space == Dim) make_volumes_certain();
   }
 
  private:
@@ -100,12 +103,12 @@ class Snapping {
 
   void move(const Candidate& c) {
     if (!is_disc(c.near)) return;
-    Vector<Dim>& place = domain_.mesh.position_of[c.near];
+    Vector<Dim>& place = snapped_.place_of[c.near];
     const Vector<Dim> from = place;
-    const Vector<Dim> to = from + c.t * (domain_.mesh.position_of[c.far] - from);
+    const Vector<Dim> to = from + c.t * (snapped_.place_of[c.far] - from);
     if (to == from) return take(c.near);
     if (c.t < least_part) is_close_[c.near] = 1;
-    if (!may_slide(domain_, c.near, c.far)) return;
+    if (!may_slide(domain_, snapped_.place_of, c.near, c.far)) return;
     place = to;
     if (!keeps_shapes(c.near)) {
       place = from;
@@ -120,11 +123,11 @@ class Snapping {
   bool keeps_shapes(VertexId v) const {
     double before = 1, after = 1;
     for (const ElementId e : domain_.mesh.elements_of(v)) {
-      std::array<Vector<Dim>, Dim + 1> old;
+      std::array<Vector<Dim>, Dim + 1> moved;
       for (std::size_t i = 0; i <= Dim; ++i)
-        old[i] = position_in<Dim>(domain_.any, domain_.mesh.corners_of[e][i]);
-      before = std::min(before, shape_of(old));
-      after = std::min(after, shape_of(domain_.mesh.points(e)));
+        moved[i] = snapped_.place_of[domain_.mesh.corners_of[e][i]];
+      before = std::min(before, shape_of(domain_.mesh.points(e)));
+      after = std::min(after, shape_of(moved));
     }
     return after > 0 && after > std::min(poor, 0.5 * before);
   }
@@ -177,7 +180,7 @@ class Snapping {
         executor_, domain_.mesh.element_count(), [&](std::size_t e, auto&& append) {
           const auto pieces = divider.divide(domain_.mesh.corners_of[e]);
           if (pieces.count > 1 && std::ranges::any_of(pieces, [&](const Corners<Dim>& piece) {
-                return orientation<Dim>(divider.places(domain_, piece)) <= 0;
+                return orientation<Dim>(divider.places(snapped_.place_of, piece)) <= 0;
               }))
             append(static_cast<ElementId>(e));
         });
@@ -194,8 +197,8 @@ class Snapping {
   }
 
   const runtime::Executor& executor_;
-  CutDomain<Dim>& domain_;
-  Snapped& snapped_;
+  const CutDomain<Dim>& domain_;
+  Snapped<Space>& snapped_;
   Discs<Dim> discs_;
   std::vector<std::uint8_t> is_refused_;  // [vertex] 1: the surface must not go through it
   std::vector<std::uint8_t> is_close_;    // [vertex] 1: see most_moved

@@ -702,6 +702,11 @@ static void test_level_sets(void) {
   EXPECT(fabs(value - .2) < 1e-5);
   ductile_mesh_destroy(cut);
   EXPECT(ductile_options_set(options, "keep_volume", 0) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "lssurf", 2) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "lssurf", 1) == DUCTILE_OK);
+  EXPECT(ductile_cut(mesh, phi, options, &cut) == DUCTILE_WRONG_INPUT);
+  EXPECT(strstr(ductile_last_error(), "expected tetrahedra and triangles") != NULL);
+  EXPECT(ductile_options_set(options, "lssurf", 0) == DUCTILE_OK);
   EXPECT(ductile_options_set(options, "ls", 9) == DUCTILE_OK);
   EXPECT(ductile_cut(mesh, phi, options, &cut) == DUCTILE_OK);
   EXPECT(ductile_mesh_warning(cut, 0) != NULL);

@@ -326,6 +326,27 @@ TEST_P(LevelSetOption, CutsRandomFunctions) {
   }
 }
 
+/// The boundary of a box, alone and with its tetrahedra: the same triangles on each side.
+TEST_P(LevelSetOption, CutsSurfaces) {
+  if (dimension_ == 2) return;
+  write_values("x.sol", [](const Point& p) { return p[0] + 0.3 * p[1] - 0.6; });
+  const AnyMesh solid = run("-lssurf 0.05 -sol x.sol -noinsert -noswap -nomove");
+  EXPECT_TRUE(contains(said_, "vertices moved onto the curve"));
+  EXPECT_EQ(volume_by_reference(solid).size(), volume_by_reference(mesh_).size());
+  AnyMesh surface = mesh_;
+  surface.tetrahedra = {};
+  write("m.mesh", surface);
+  const AnyMesh alone = run("-ls 0.05 -sol x.sol -noinsert -noswap -nomove");
+  EXPECT_EQ(alone.triangles.reference.size(), solid.triangles.reference.size());
+  EXPECT_EQ(std::set(alone.triangles.reference.begin(), alone.triangles.reference.end()),
+            (std::set<std::int32_t>{2, 3}));
+  for (const std::string words : {"-ls 0.05 -sol x.sol -hausd 0.01 ", "-ls -sol x.sol "}) {
+    const AnyMesh fine = run(words + size());
+    EXPECT_GT(fine.triangles.size(), alone.triangles.size());
+    EXPECT_GT(std::ranges::count(fine.edges.reference, 10), 10);
+  }
+}
+
 TEST_P(LevelSetOption, RefusesInOneLine) {
   write_values("short.sol", ball_);
   const Function bad = [](const Point& p) { return p[0] > 0.9 ? std::nan("") : p[0]; };
@@ -354,7 +375,10 @@ TEST_P(LevelSetOption, RefusesInOneLine) {
   expect_refused("-sol phi.sol -met phi.sol", "options -sol and -met");
   expect_refused("-ls -sol phi.sol -f bad.mmg2d", "bad.mmg2d:3: expected each reference once");
   expect_refused("-ls -sol phi.sol -f worse.mmg2d", "worse.mmg2d:2: expected nosplit or");
-  expect_refused("-ls -sol phi.sol -lssurf", "unknown option -lssurf");
+  expect_refused("-ls -sol phi.sol -lssurf", "options -ls and -lssurf: expected one of them");
+  expect_refused("-lssurf -sol phi.sol --keep-volume 1", "option --keep-volume: expected -ls");
+  if (dimension_ == 2)
+    expect_refused("-lssurf -sol phi.sol", "m.mesh: expected tetrahedra and triangles");
   expect_refused("-ls -sol phi.sol -o phi.sol", "phi.sol");
 }
 

@@ -86,7 +86,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adpat", "did you mean 'adapt'");
   expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
   expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
-  for (const char* refused : {"3dMedit", "lssurf", "nreg", "nsd", "optimLES", "xreg"})
+  for (const char* refused : {"3dMedit", "nreg", "nsd", "optimLES", "xreg"})
     expect(("adapt a.mesh -" + std::string(refused) + " 1").c_str(),
            ("unknown option -" + std::string(refused) + "\n  Mmg's, not here: ").c_str());
   expect("adapt a.mesh -in b.mesh", "expected one mesh, found 2");

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "support/ball_in_box.hpp"
 #include "support/bits.hpp"
@@ -177,6 +179,56 @@ TYPED_TEST(LevelSetFunctionIn, HasTheVerticesOfAdaptedInterfacesOnIt) {
     ++all;
   }
   EXPECT_GE(on_it, all - all / 20) << "few are held by what is around them";
+}
+
+/// Sizes of chords: those of a ball by its radius, of planes and at edges of boxes none.
+TYPED_TEST(LevelSetFunctionIn, HasSizesFromItsCurvature) {
+  const Executor executor({.threads = 2});
+  constexpr int d = TypeParam::value;
+  constexpr double share = d == 2 ? 0.25 : 0.4;
+  for (std::uint64_t seed = 0; seed < test::trials(4); ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    const AnyMesh mesh = background(d, d == 2 ? 30 : 16, random);
+    const double r = test::uniform(random, 0.4, 0.7), x = test::uniform(random, -0.3, 0.3);
+    const auto largest_at = [&](const Function& f, const Point& at) {
+      const auto sizes =
+          LevelSetFunction(executor, mesh, values_on(mesh, f)).surface(1, tolerance).sizes(at);
+      Metric<d> tensor;
+      std::copy_n(sizes.begin(), tensor.m.size(), tensor.m.begin());
+      const auto axes = principal_axes(tensor);
+      return *std::max_element(axes.value.begin(), axes.value.end());
+    };
+    const auto ball = [r](const Point& p) { return std::hypot(p[0], p[1], p[2]) - r; };
+    const double a = test::uniform(random, 0, 6), expected = 1 / (8 * share * tolerance * r);
+    EXPECT_NEAR(largest_at(ball, {r * std::cos(a), r * std::sin(a), 0}) / expected, 1, 0.2);
+    const auto plane = [x](const Point& p) { return p[0] + x * p[1] - x; };
+    EXPECT_LT(largest_at(plane, {x, 0, 0}), 1e-6 * expected);
+    const auto box = [x](const Point& p) { return std::max(p[0], p[1]) - x; };
+    EXPECT_LT(largest_at(box, {x, x, 0}), 1e-6 * expected);
+  }
+}
+
+TYPED_TEST(LevelSetFunctionIn, MakesInterfacesFinerWhereTheyBendAlone) {
+  const Executor executor({.threads = 2});
+  constexpr auto d = static_cast<std::size_t>(TypeParam::value);
+  test::Random random(9);
+  const AnyMesh mesh = test::ball_in_box(TypeParam::value, d == 2 ? 16 : 8, radius);
+  const AnyMesh grid = background(TypeParam::value, d == 2 ? 20 : 12, random);
+  SurfaceFunction surface = LevelSetFunction(executor, grid, values_on(grid, distance_from_ball))
+                                .surface(test::ball_interface, tolerance);
+  const auto count = [&] {
+    const AnyMesh result = adapted(executor, mesh, surface, d == 2 ? 0.2 : 0.22).mesh;
+    EXPECT_EQ(test::joined(check_adapted(executor, mesh, result, tolerance)), "");
+    return test::interface_vertices(result).size();
+  };
+  const std::size_t finer = count();
+  surface.sizes = nullptr;
+  const std::size_t coarser = count();
+  EXPECT_GT(finer, 1.1 * static_cast<double>(coarser));
+  EXPECT_LT(finer, 3 * coarser);
+  surface.sizes = [](const Point&) { return std::array<double, 6>{}; };
+  EXPECT_EQ(count(), coarser);
 }
 
 TYPED_TEST(LevelSetFunctionIn, GivesTheSameBytesAtAnyNumberOfThreads) {

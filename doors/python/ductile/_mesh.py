@@ -418,10 +418,10 @@ class Mesh:
     def cut(self, phi: Any, level: float = 0, *, minus: int = 3, plus: int = 2, interface: int = 10,
             materials: Optional[Mapping[int, Optional[Sequence[int]]]] = None,
             least_component: float = 0, keep_volume: Optional[float] = None,
-            threads: int = 0) -> Mesh:
+            boundary_only: bool = False, threads: int = 0) -> Mesh:
         """The mesh cut where a function is `level`.
 
-        The level set becomes facets. Elements close to it may be bad; `remesh` makes good ones, and
+        The level set becomes facets, on a surface alone edges. Elements close to it may be bad; `remesh` makes good ones, and
         with `hausd` puts the interface on the curved surface of the function.
 
         Parameters
@@ -438,7 +438,11 @@ class Mesh:
             Connected parts of either side with less than this fraction of the volume become part of
             the other side.
         keep_volume : float, optional
-            `level` is changed so that the cells of lower values have this volume.
+            `level` is changed so that the cells of lower values have this volume within 1e-6 of it;
+            if no level gives that, there is a warning.
+        boundary_only : bool, optional
+            Cut only the triangles of the boundary of tetrahedra: these get the references of the
+            sides, and the edges between them `interface`.
         threads : int, optional
             0: as many as there are cores. The mesh is the same, bit for bit, for any number.
 
@@ -463,8 +467,9 @@ class Mesh:
                              f"found {values.shape}")
         options = _ductile.CutOptions(
             number(level, "level"), references_of(minus, plus, interface), materials_of(materials),
-            number(least_component, "least_component"),
-            None if keep_volume is None else number(keep_volume, "keep_volume"))
+            (number(least_component, "least_component"),
+             None if keep_volume is None else number(keep_volume, "keep_volume"),
+             flag(boundary_only, "boundary_only")))
         with named(self.dim):
             data = _ductile.cut(self._data, values, options, executor(threads))
         out = Mesh._of(data.mesh)

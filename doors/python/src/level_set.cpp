@@ -60,7 +60,7 @@ py::array metric_of_cut(const Cut& cut, const std::optional<Given<double>>& give
 /// Lets adapt() put the interface, if there is one, on the surface of the level set.
 void add_surface_of(const Cut& cut, meshadapt::AdaptOptions& options,
                     const ExecutorOptions& threads) {
-  if (cut.made.report.interface_facets == 0) return;
+  if (cut.made.report.interface_facets == 0 || cut.made.report.on_surface) return;
   options.make.functions.push_back(work(threads, [&](const Executor& executor) {
     return meshadapt::LevelSetFunction(executor, *cut.before, cut.values, cut.made.report.level)
         .surface(cut.interface, options.make.hausdorff_tolerance);
@@ -85,14 +85,13 @@ py::tuple vertex_origins(const Cut& cut) {
 
 CutOptions cut_options(double level, const std::tuple<int, int, int>& references,
                        const std::vector<std::tuple<int, bool, int, int>>& materials,
-                       double least_component, std::optional<double> keep_volume) {
+                       const std::tuple<double, std::optional<double>, bool>& others) {
   CutOptions options;
   options.level = level;
   std::tie(options.minus, options.plus, options.interface) = references;
   for (const auto& [reference, split, minus, plus] : materials)
     options.materials.push_back(CutMaterial{reference, split, minus, plus});
-  options.least_component = least_component;
-  options.keep_volume = keep_volume;
+  std::tie(options.least_component, options.keep_volume, options.boundary_only) = others;
   return options;
 }
 

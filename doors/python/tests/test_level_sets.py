@@ -121,10 +121,28 @@ def test_options(mesh, dim):
     assert mesh.cut(bars).level_set.report.removed_components == 0
     assert mesh.cut(bars, least_component=0.01).level_set.report.removed_components == 1
     volume = mesh.cut(phi, keep_volume=0.1)
-    assert volumes(volume)[volume.refs == 3].sum() == pytest.approx(0.1, rel=1e-3)
+    assert volumes(volume)[volume.refs == 3].sum() == pytest.approx(0.1, rel=1e-6)
     with pytest.warns(ductile.InputWarning, match="met nowhere"):
         one = mesh.cut(phi, 9)
     assert (one.refs == 3).all() and (one.remesh(hausd=0.02).refs == 3).all()
+
+
+def test_surfaces_are_cut_along_their_edges():
+    solid = ductile.box((1, 1, 1), (6, 6, 6))
+    used, corners = np.unique(solid.facets, return_inverse=True)
+    surface = ductile.Mesh(solid.points[used], corners.reshape(-1, 3))
+    for seed in range(6):
+        phi = random_function(solid.points, np.random.default_rng(seed), "smooth")
+        out = surface.cut(phi[used])
+        assert out.check() == [] and set(np.unique(out.refs)) == {2, 3}
+        assert (out.level_set.value[out.facets[out.facet_refs == 10]] == 0).all()
+        fine = out.remesh(0.1, hausd=0.01, hgrad=1.3)
+        assert fine.check() == [] and set(np.unique(fine.refs)) == {2, 3}
+        whole = solid.cut(phi, boundary_only=True)
+        assert whole.check() == [] and volumes(whole).sum() == pytest.approx(1)
+        assert set(np.unique(whole.facet_refs)) == {2, 3}
+        assert len(whole.facets) == len(out.cells)
+        assert whole.remesh(0.2, hausd=0.01).check() == []
 
 
 def test_results_do_not_depend_on_threads(mesh):

@@ -55,6 +55,11 @@ struct SurfaceFunction {
   /// farther away than the Hausdorff tolerance, the model of the mesh counts. Otherwise a result
   /// that is too far away is an error.
   bool approximate = false;
+  /// With a gradation or curved_sizes: returns the tensor, stored as Metric is, that asks for
+  /// elements at a point of the surface; 0 in directions in which it asks for nothing. Edges become
+  /// shorter by a factor of 0.6 at most. Empty: sizes are those of the model alone. Called as
+  /// `closest` is.
+  std::function<std::array<double, 6>(const std::array<double, 3>&)> sizes = {};
 };
 
 /// How a Mesh is made from a file's mesh: which parts of its boundary may change.

@@ -1,10 +1,10 @@
 /// @file
 /// cut(): cuts a mesh along the surface (2D: curve) where a function, known at the vertices, is 0.
-/// The surface becomes facets of the mesh, and the elements on its two sides get references of
-/// their own. Vertices near the surface are moved onto it, so that the new elements are not much
-/// worse than the old ones; adapt() improves them. The surface has the topology of the zero of the
-/// function's linear interpolant, where a value of 0 counts as positive. Results do not depend on
-/// the number of threads.
+/// A surface alone is cut along a curve through its edges. The surface becomes facets of the mesh,
+/// and the elements on its two sides get references of their own. Vertices near the surface are
+/// moved onto it, so that the new elements are not much worse than the old ones; adapt() improves
+/// them. The surface has the topology of the zero of the function's linear interpolant, where a
+/// value of 0 counts as positive. Results do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -47,8 +47,14 @@ struct CutOptions {
   /// vertices, the gradients recovered from them. False: where its linear interpolant is 0.
   bool curved = true;
 
-  /// The level is changed until the elements of lower values have this volume (2D: area).
+  /// The level is changed until the elements of lower values have this volume (2D and surfaces:
+  /// area) within 1e-6 of it; if no level gives that, there is a warning.
   std::optional<double> keep_volume;
+
+  /// Cuts only the listed triangles of a mesh of tetrahedra: these get references by side, new
+  /// edges between them get `interface`, and tetrahedra that have an edge there are divided but
+  /// keep their references. References in `materials` are then those of triangles.
+  bool boundary_only = false;
 };
 
 /// The place of a vertex of a cut mesh in the mesh before: (1 - t) a + t b. a == b for a vertex
@@ -61,13 +67,15 @@ struct VertexOrigin {
 
 struct CutReport {
   double level = 0;                    ///< at which the mesh was cut
-  double minus_volume = 0;             ///< of the elements with lower values, where they are split
+  double minus_volume = 0;             ///< of the elements with lower values, where they are split;
+                                       ///< an area in 2D and on surfaces
   std::size_t interface_facets = 0;    ///< facets on the surface
   std::size_t cut_elements = 0;        ///< elements that were cut
   std::size_t moved_vertices = 0;      ///< vertices that were moved onto the surface
   std::size_t taken_vertices = 0;      ///< vertices the surface goes through where they are
   std::size_t removed_components = 0;  ///< see CutOptions::least_component
   double removed_volume = 0;
+  bool on_surface = false;  ///< the interface is a curve on a surface alone, or on a boundary
   Warnings warnings;
 };
 
@@ -78,6 +86,7 @@ struct CutMesh {
   std::vector<VertexOrigin> vertex_origin;  ///< [vertex]
   std::vector<ElementId> element_origin;    ///< [element] the one it is a part of
   std::vector<std::uint32_t> facet_origin;  ///< [listed facet] likewise; `none` on the surface
+                                            ///< (of a surface alone, facets are edges)
   CutReport report;
 };
 

@@ -37,7 +37,8 @@ class LevelSetFunction {
 
   /// The surface where the function is 0, for the facets with this reference; the closest point is
   /// found by Newton's method. It is unknown where the surface is farther away than `within`, or
-  /// the method does not converge: see SurfaceFunction::approximate.
+  /// the method does not converge: see SurfaceFunction::approximate. Its sizes are those of chords
+  /// that stay within 0.4 `within` of it, 2D: 0.25, because their distances add up to a volume.
   SurfaceFunction surface(std::int32_t reference, double within) const;
 
  private:

@@ -30,9 +30,11 @@ struct LevelSetSizesOptions {
 /// Adapts the mesh to the metric, made finer at edges where the zero is not resolved, again and
 /// again: where the value in the middle of an edge shows that the zero is off by more than the
 /// tolerance, or that there is one between ends of the same sign. Returns the mesh as it is if all
-/// is resolved there, and ends when it is, when edges have the smallest size, or with a warning
-/// after the most passes. A cut at the zero is then within the tolerance of the function, as
-/// adapt() needs it to hold a Hausdorff tolerance against LevelSetFunction::surface(). Throws
+/// is resolved there, and ends when it is, or after the most passes, with a warning if it is off by
+/// more than two tolerances. Edges of the
+/// smallest size count as resolved: at kinks, and where the gradient is 0, no size would be small
+/// enough. Elsewhere a cut at the zero is then within the tolerance of the function, as adapt()
+/// needs it to hold a Hausdorff tolerance against LevelSetFunction::surface(). Throws
 /// InputError for options out of range and for values that are missing or not finite, and as
 /// adapt() does; exceptions of the function leave it.
 AdaptedMesh refine_to_level_set(const runtime::Executor& executor, const AnyMesh& mesh,
