@@ -20,7 +20,7 @@
 
 namespace ductile::meshadapt {
 
-/// A tree of the facets; the parts of each are looked at one by one.
+/// A tree of the flat parts, in the order of their numbers.
 template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
   using BoxHierarchy<Dim>::BoxHierarchy;
@@ -29,10 +29,7 @@ struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
 /// Calls visit(part) for each part whose box has a point in common with this one.
 template <int Dim, std::size_t Corners>
 void Sheets<Dim, Corners>::each_meeting(const Box<Dim>& box, auto&& visit) const {
-  tree_->each_meeting(box, [&](std::uint32_t facet) {
-    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
-      if (meet(box, box_of_[part])) visit(part);
-  });
+  tree_->each_meeting(box, visit);
 }
 
 /// Some parts, among which the closest to a point is looked for: first where it is likely, then
@@ -106,11 +103,12 @@ struct Sheets<Dim, Corners>::Search {
   const Sheets& sheets;
   Vector<Dim> direction;
   double tolerance;
-  static constexpr double steepest = 0.3;  // the cosine of 72 degrees
+  static constexpr double steepest = 0.3;                    // the cosine of 72 degrees
+  static constexpr double least_turn = 0.70710678118654752;  // of 45 degrees
 
   double turn(std::uint32_t part) const {
     const double cosine = dot(direction, sheets.shape_of_[part].direction);
-    return sheets.parts_[part].two_sided ? std::abs(cosine) : cosine;
+    return sheets.shape_of_[part].two_sided ? std::abs(cosine) : cosine;
   }
 
   /// Is there a gap between the sheet and this part, which faces it, or a part of the domain? Not
@@ -139,8 +137,8 @@ struct Sheets<Dim, Corners>::Search {
     const Points own = sheets.facet_of(part);
     std::uint32_t last = none;
     return std::any_of(others.begin(), others.end(), [&](std::uint32_t other) {
-      const std::uint32_t before = std::exchange(last, sheets.origin_of_[other].curved);
-      if (last != none && last == before) return false;
+      const std::uint32_t before = std::exchange(last, sheets.origin_of_[other].facet);
+      if (last == before) return false;
       const Points corners = sheets.facet_of(other);
       return std::any_of(corners.begin(), corners.end(),
                          [&](const Vector<Dim>& corner) { return has(own, corner); });
@@ -194,7 +192,7 @@ struct Sheets<Dim, Corners>::Search {
   Near inside(const Box<Dim>& box, const Near& parts) const {
     Near near;
     for (const std::uint32_t part : parts)
-      if (meet(box, sheets.box_of_[part])) near.push_back(part);
+      if (meet(box, sheets.tree_->box_at(part))) near.push_back(part);
     return near;
   }
   Around inside(const Box<Dim>& box, const Around& around) const {

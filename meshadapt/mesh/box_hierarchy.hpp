@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,27 +31,44 @@ double squared_distance(const Box<Dim>& box, const Vector<Dim>& point) {
   return sum;
 }
 
+/// The numbers of n things with boxes box_of(i), along a space-filling curve. Thread safety: one
+/// caller; runs on the executor.
+std::vector<std::uint32_t> hilbert_order(const runtime::Executor& executor, std::size_t n,
+                                         const auto& box_of) {
+  using ABox = std::decay_t<decltype(box_of(std::size_t{}))>;
+  struct Keyed {
+    std::uint64_t key;
+    std::uint32_t thing;
+    auto operator<=>(const Keyed&) const = default;
+  };
+  const auto all = runtime::parallel_reduce(
+      executor, n, ABox::empty(), box_of, [](const ABox& a, const ABox& b) { return join(a, b); });
+  std::vector<Keyed> keyed(n);
+  runtime::parallel_for(executor, n, [&](std::size_t i) {
+    const ABox box = box_of(i);
+    keyed[i] = {hilbert_key(0.5 * (box.low + box.high), all), static_cast<std::uint32_t>(i)};
+  });
+  runtime::parallel_sort(executor, std::span(keyed));
+  std::vector<std::uint32_t> order(n);
+  runtime::parallel_for(executor, n, [&](std::size_t i) { order[i] = keyed[i].thing; });
+  return order;
+}
+
 template <int Dim>
 class BoxHierarchy {
  public:
   /// Builds the tree over n things with boxes box_of(i). Throws std::bad_alloc. Thread safety: one
   /// caller; runs on the executor.
-  BoxHierarchy(const runtime::Executor& executor, std::size_t n, const auto& box_of) {
-    const auto all =
-        runtime::parallel_reduce(executor, n, Box<Dim>::empty(), box_of,
-                                 [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
-    std::vector<Keyed> keyed(n);
-    runtime::parallel_for(executor, n, [&](std::size_t i) {
-      const Box<Dim> box = box_of(i);
-      keyed[i] = {hilbert_key(0.5 * (box.low + box.high), all), static_cast<std::uint32_t>(i)};
-    });
-    runtime::parallel_sort(executor, std::span(keyed));
-    order_.resize(n);
-    boxes_of_.emplace_back(n);
-    runtime::parallel_for(executor, n, [&](std::size_t i) {
-      order_[i] = keyed[i].thing;
-      boxes_of_[0][i] = box_of(order_[i]);
-    });
+  BoxHierarchy(const runtime::Executor& executor, std::size_t n, const auto& box_of)
+      : BoxHierarchy(executor, hilbert_order(executor, n, box_of), box_of) {}
+
+  /// The same over things in this order, of which neighbours are close to each other.
+  BoxHierarchy(const runtime::Executor& executor, std::vector<std::uint32_t> order,
+               const auto& box_of)
+      : order_(std::move(order)) {
+    boxes_of_.emplace_back(order_.size());
+    runtime::parallel_for(executor, order_.size(),
+                          [&](std::size_t i) { boxes_of_[0][i] = box_of(order_[i]); });
     while (boxes_of_.back().size() > 1) add_level(executor);
   }
 
@@ -59,6 +78,9 @@ class BoxHierarchy {
 
   /// The things along a space-filling curve.
   const std::vector<std::uint32_t>& order() const { return order_; }
+
+  /// The box around the thing at a place in order().
+  const Box<Dim>& box_at(std::size_t place) const { return boxes_of_[0][place]; }
 
   /// Calls look_at(place) for things whose boxes are closer than `square`, a squared distance that
   /// look_at may lower; place is an index into order(). Closer ones come first. Thread safety: any
@@ -70,7 +92,8 @@ class BoxHierarchy {
   /// Calls visit(i) for each thing whose box has a point in common with this one, in an order that
   /// is the same each time. Thread safety: any thread.
   void each_meeting(const Box<Dim>& box, const auto& visit) const {
-    if (!order_.empty()) visit_meeting(boxes_of_.size() - 1, 0, box, visit);
+    if (!order_.empty() && meet(boxes_of_.back()[0], box))
+      visit_below(boxes_of_.size() - 1, 0, box, visit);
   }
 
   std::size_t bytes() const {
@@ -81,12 +104,6 @@ class BoxHierarchy {
 
  private:
   static constexpr std::size_t width = 4;
-
-  struct Keyed {
-    std::uint64_t key;
-    std::uint32_t thing;
-    friend auto operator<=>(const Keyed&, const Keyed&) = default;
-  };
 
   struct Search {
     const Vector<Dim>& point;
@@ -117,12 +134,24 @@ class BoxHierarchy {
       look_into(level - 1, below[i].second, search, look_at);
   }
 
-  void visit_meeting(std::size_t level, std::size_t index, const Box<Dim>& box,
-                     const auto& visit) const {
-    if (!meet(boxes_of_[level][index], box)) return;
+  /// Visits what is in a box that meets the one in question. All boxes below are compared before
+  /// any is entered, because branches on single comparisons would be unpredictable.
+  void visit_below(std::size_t level, std::size_t index, const Box<Dim>& box,
+                   const auto& visit) const {
     if (level == 0) return visit(order_[index]);
-    const std::size_t end = std::min(boxes_of_[level - 1].size(), (index + 1) * width);
-    for (std::size_t k = index * width; k < end; ++k) visit_meeting(level - 1, k, box, visit);
+    const auto& boxes = boxes_of_[level - 1];
+    const std::size_t begin = index * width, count = std::min(boxes.size() - begin, width);
+    unsigned meeting = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Box<Dim>& other = boxes[begin + k];
+      bool meets = true;
+      for (int i = 0; i < Dim; ++i)
+        meets = meets & (other.low[i] <= box.high[i]) & (box.low[i] <= other.high[i]);
+      meeting |= static_cast<unsigned>(meets) << k;
+    }
+    for (; meeting != 0; meeting &= meeting - 1)
+      visit_below(level - 1, begin + static_cast<std::size_t>(std::countr_zero(meeting)), box,
+                  visit);
   }
 
   std::vector<std::uint32_t> order_;

@@ -21,7 +21,7 @@ using runtime::ExecutorOptions;
 py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
   auto found = work(
       {}, [&](const Executor& executor) { return meshadapt::origins(executor, before, after); });
-  const Shape shape{signed_size(found.vertex.size()), before.dimension + 1};
+  const Shape shape{signed_size(found.vertex.size()), element_dimension(before) + 1};
   return py::make_tuple(take(std::move(found.vertex)), take(std::move(found.facet)),
                         take(std::move(found.element)), take(std::move(found.host)),
                         take(std::move(found.weight), shape));
