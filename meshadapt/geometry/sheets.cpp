@@ -147,7 +147,8 @@ template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover_closely(const Points& simplex, std::uint32_t sheet,
                                          const Search& search) const {
   if constexpr (Dim < 3 || Corners < 3) return false;
-  const double margin = search.tolerance / 4;
+  constexpr double share = 0.4;  // flat parts alone may be off by 1/8
+  const double margin = share * search.tolerance;
   Near covering;
   bool is_alone = true;
   each_meeting(box_around(simplex, margin), [&](std::uint32_t part) {

@@ -50,7 +50,11 @@ struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t
     for (std::size_t i = 0; i < this->size(); ++i) {
       const Vector<Dim> aside = sheets.shape_of_[(*this)[i]].centre - point;
       square_of[i] = dot(aside, aside);
-      if (std::pair(square_of[i], (*this)[i]) < std::pair(square_of[first], (*this)[first]))
+      const auto number = [&](std::size_t k) {
+        return std::pair(sheets.origin_of_[(*this)[k]].facet, (*this)[k]);
+      };
+      if (square_of[i] < square_of[first] ||
+          (square_of[i] == square_of[first] && number(i) < number(first)))
         first = i;
     }
     look((*this)[first]);
@@ -256,13 +260,14 @@ struct Sheets<Dim, Corners>::Search {
   Graph graph_over(const Points& simplex, const Near& parts) const {
     constexpr double far = 1.5;  // more than what is turned by 45 degrees may have
     const Prism<Dim, Corners> prism(simplex);
+    typename Prism<Dim, Corners>::Clipping clipping;
     Graph graph{false, 0, simplex[0]};
     double share = 0;
     bool looked = false;
     for (const std::uint32_t part : parts) {
       const Shape& shape = sheets.shape_of_[part];
       if (prism.is_beside(shape.centre, shape.radius)) continue;
-      const auto inside = prism.inside(sheets.parts_[part].corner);
+      const auto& inside = prism.inside(sheets.parts_[part].corner, clipping);
       share += (folds_back(part) ? -1 : 1) * prism.share(inside);
       for (const auto& place : inside) {
         const double here = place.aside();
@@ -286,8 +291,9 @@ struct Sheets<Dim, Corners>::Search {
   /// Is the simplex below any of the parts, or above?
   bool is_below(const Points& simplex, const Near& parts) const {
     const Prism<Dim, Corners> prism(simplex);
+    typename Prism<Dim, Corners>::Clipping clipping;
     return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
-      return prism.share(prism.inside(sheets.parts_[part].corner)) > 1e-9;
+      return prism.share(prism.inside(sheets.parts_[part].corner, clipping)) > 1e-9;
     });
   }
 

@@ -49,7 +49,7 @@ SolutionMetricOptions for_elements(double count) { return {.goal = {.elements = 
 
 /// Adapts a few times, each time to the solution on the mesh at hand.
 AnyMesh adapted_to(AnyMesh mesh, const Function& f, double elements, const AdaptOptions& options) {
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < 3; ++round) {
     const auto made = solution_metric(two(), mesh, sampled(mesh, f), for_elements(elements));
     mesh = adapt(two(), mesh, made.metric, options).mesh;
   }
@@ -61,6 +61,8 @@ double layer(const Vector<3>& p) {
   const Vector<3> q = (1 / norm(p)) * p;
   return std::tanh((q[2] - 0.3 * q[0]) / 0.1);
 }
+/// The same around the middle of the unit box.
+double layer_in_box(const Vector<3>& p) { return layer(p - Vector<3>{{0.5, 0.5, 0.5}}); }
 
 /// The L2 norm of the error of linear interpolation, by values at the middles of edges.
 double interpolation_error(const AnyMesh& mesh, const Function& f) {
@@ -78,7 +80,7 @@ double interpolation_error(const AnyMesh& mesh, const Function& f) {
 TEST(SurfaceSolutions, ErrorsFallAtTheOptimalRate) {
   std::vector<double> errors;
   for (const double elements : {1500.0, 6000.0}) {
-    const AnyMesh mesh = adapted_to(sphere(32), layer, elements, within(0.002));
+    const AnyMesh mesh = adapted_to(sphere(32), layer, elements, within(0.02));
     EXPECT_NEAR(static_cast<double>(mesh.triangles.size()) / elements, 1, 0.1);
     errors.push_back(interpolation_error(mesh, layer));
   }
@@ -156,7 +158,7 @@ TEST(SurfaceSolutions, RidgesBelongToBothSides) {
     if (at(mesh, v)[2] < 0.99) {
       EXPECT_GT(1 / std::sqrt(tensors[v](2, 2)), 0.3) << v;
     }
-  for (const auto& f : std::vector<Function>{bends_on_top, layer}) {
+  for (const auto& f : std::vector<Function>{bends_on_top, layer_in_box}) {
     const AnyMesh adapted = adapted_to(mesh, f, 4000, {});
     EXPECT_NEAR(static_cast<double>(adapted.triangles.size()) / 4000, 1, 0.12);
     for (const auto& [reference, area] : areas(adapted)) EXPECT_NEAR(area, 1, 1e-9) << reference;
@@ -165,7 +167,7 @@ TEST(SurfaceSolutions, RidgesBelongToBothSides) {
 
 TEST(SurfaceSolutions, AreTheSameAtAnyNumberOfThreads) {
   const AnyMesh mesh = box(9);
-  const AnyField field = sampled(mesh, layer);
+  const AnyField field = sampled(mesh, layer_in_box);
   SolutionMetricOptions options = for_elements(1000);
   options.gradation = 1.3;
   const auto on = [&](int threads) {
