@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "left_out.hpp"
+#include "mesh/flatten.hpp"
 #include "number_reader.hpp"
 #include "vtk_cells.hpp"
 
@@ -265,7 +266,9 @@ bool is_su2(std::string_view bytes) {
 }
 
 AnyMesh read_su2(const FileBytes& bytes, Warnings* warnings) {
-  return Su2Reader(bytes, warnings).read();
+  AnyMesh mesh = Su2Reader(bytes, warnings).read();
+  flatten(mesh, warnings);
+  return mesh;
 }
 
 }  // namespace ductile::meshadapt

@@ -49,7 +49,8 @@ bool is_better(const Standing& after, const Standing& before, const Clearly& cle
   return (qualities.is_less(clearly) && lengths.is_at_most(hardly)) ||
          (lengths.is_less(clearly) && qualities.is_at_most(clearly.qualities)) ||
          per_element(after, after.poor + chance) < 0.5 * per_element(before, before.poor) ||
-         per_element(after, after.far + chance) < 0.5 * per_element(before, before.far);
+         per_element(after, after.far + chance) < 0.5 * per_element(before, before.far) ||
+         (2 * after.elements < before.elements && after.far <= before.far);
 }
 
 template Standing standing_of<2>(const runtime::Executor&, const Mesh<2>&, const EdgeRange&,

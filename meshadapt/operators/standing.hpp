@@ -37,7 +37,8 @@ inline constexpr Clearly after_mending{
     .part = 0.9, .least = 0, .qualities = std::numeric_limits<double>::infinity()};
 
 /// Is the one clearly better than the other? So it is, too, if less than half as many elements are
-/// poor, or far from the range.
+/// poor, or far from the range, or if there are less than half as many elements, no more of them
+/// far from the range: where a thin wall is coarsened, elements become flatter.
 bool is_better(const Standing& after, const Standing& before, const Clearly& clearly);
 
 }  // namespace ductile::meshadapt

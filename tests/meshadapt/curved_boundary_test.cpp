@@ -352,6 +352,24 @@ AnyMesh shell(int n, double thickness, bool is_bowl) {
   return mesh;
 }
 
+/// Elements of a thin wall become flatter where it is coarsened.
+TEST(CurvedBoundaries, OfThinShellsAreCoarsened) {
+  test::Random random(56);
+  const Executor executor({.threads = 2});
+  for (int trial = 0; trial < 4; ++trial) {
+    const double thickness = test::uniform(random, 0.015, 0.03);
+    const AnyMesh mesh = shell(30, thickness, trial % 2 == 1);
+    AdaptOptions options;
+    options.make.hausdorff_tolerance = test::uniform(random, 0.01, 0.02);
+    SCOPED_TRACE("trial " + std::to_string(trial) + ", thickness " + std::to_string(thickness) +
+                 ", tolerance " + std::to_string(options.make.hausdorff_tolerance));
+    const AnyMesh result = adapt(executor, mesh, coarsest_metric(mesh, 0.6), options).mesh;
+    EXPECT_LT(result.tetrahedra.size(), mesh.tetrahedra.size() / 2);
+    EXPECT_GT(volume_of(result), 0.98 * volume_of(mesh));
+    EXPECT_EQ(test::joined(check_mesh(executor, result)), "");
+  }
+}
+
 /// The shells are thinner than a few tolerances, and the chords of their facets are about as far
 /// off.
 TEST(CurvedBoundaries, OfThinShellsLoseNothingInManyCalls) {

@@ -134,6 +134,19 @@ TEST(Su2, MarkersThatAreNumbersAreReferences) {
   EXPECT_EQ(found.names, (std::vector<ReferenceName>{{1, 2, "wall"}, {1, 3, "inlet"}}));
 }
 
+TEST(Su2, TrianglesInAPlaneOfSpaceAreAMeshOfDimension2) {
+  const std::array<const char*, 3> points = {"7 0 0\n7 1 0\n7 0 1\n", "0 7 0\n1 7 0\n0 7 1\n",
+                                             "0 0 7\n1 0 7\n0 1 7\n"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const AnyMesh found = read_text("NDIME= 3\nNELEM= 0\nNPOIN= 3\n" + std::string(points[axis]) +
+                                    "NMARK= 1\nMARKER_TAG= wall\nMARKER_ELEMS= 1\n5 0 1 2\n");
+    EXPECT_EQ(found.dimension, 2);
+    EXPECT_EQ(found.dropped_axis, axis);
+    EXPECT_EQ(found.coordinates, (std::vector<double>{0, 0, 1, 0, 0, 1}));
+    EXPECT_EQ(found.names, (std::vector<ReferenceName>{{2, 1, "wall"}}));
+  }
+}
+
 // ---- Invalid files ----
 
 TEST(Su2, ComplainsWithTheLine) {
