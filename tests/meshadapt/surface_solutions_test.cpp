@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"

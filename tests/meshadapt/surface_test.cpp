@@ -221,6 +221,25 @@ TEST(Surface, KeepsWhatIsRequired) {
     for (const std::uint32_t v : mesh.triangles.vertices[t]) EXPECT_TRUE(has(at(mesh, v)));
 }
 
+/// Walls that are thinner than the tolerance, with free and with locked rims.
+TEST(Surface, ThatIsThinDoesNotMeetItself) {
+  for (const bool lock : {false, true})
+    for (const double thickness : {0.01, 0.04}) {
+      SCOPED_TRACE(thickness);
+      const auto side = [&](double z, bool turned) {
+        return sheet(5, 5, [=](double u, double v) {
+          const double x = turned ? v : u, y = turned ? u : v;
+          return Vector<3>{{x, y, z + 0.1 * std::sin(4 * x)}};
+        });
+      };
+      const AnyMesh mesh = welded({side(0, true), side(thickness, false)});
+      AdaptOptions options = within(0.07);
+      options.make.lock_boundary = lock;
+      const AdaptedMesh adapted = adapted_to(mesh, 0.04, options);
+      EXPECT_EQ(euler(adapted.mesh), euler(mesh));
+    }
+}
+
 /// Random sizes, folds, holes and noise: all results are valid.
 TEST(Surface, IsValidHoweverItIs) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
