@@ -209,7 +209,7 @@ class CaseMaker {
       for (const char* word :
            {"-nosurf", "-noswap", "-nomove", "-noinsert", "--thorough", "--by-colours"})
         if (random_.chance(0.06)) option(word);
-    if (has("-nosurf")) case_.promise.tolerance = 0;
+    if (has("-nosurf") && !mesh().surface) case_.promise.tolerance = 0;  // else of rims only
     if (random_.chance(0.04)) {
       option("--racing");
       case_.deterministic = false;
