@@ -287,11 +287,12 @@ int ductile_transfer_create(const ductile_mesh* before, const ductile_mesh* afte
 void ductile_transfer_destroy(ductile_transfer* transfer);
 
 /** For each vertex, facet or element of `after` the index in `before` of the vertex at the same
- * position or of the entity with the same vertices; -1 if none. NULL for other kinds. */
+ * position or of the entity with the same vertices; -1 if none. NULL for other kinds. The triangles
+ * of a surface are facets and elements here. */
 const int32_t* ductile_transfer_origins(const ductile_transfer* transfer, int kind);
 /** For each vertex of `after` the element of `before` that contains it, or the closest. */
 const int32_t* ductile_transfer_hosts(const ductile_transfer* transfer);
-/** Its barycentric weights there, [vertex * (dimension + 1) + corner]. */
+/** Its barycentric weights there, [vertex * corners of an element + corner]. */
 const double* ductile_transfer_weights(const ductile_transfer* transfer);
 
 /** Transfers values, [entity * components + component], to `result`, which has room for those of

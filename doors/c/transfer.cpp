@@ -32,7 +32,7 @@ meshadapt::NamedField::Place place_of(int kind) {
 
 std::size_t entity_count(const AnyMesh& mesh, int kind) {
   if (kind == DUCTILE_VERTICES) return mesh.vertex_count();
-  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  return element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
 /// The indices as signed numbers, so that `none` is -1. The signed type may alias the unsigned one.
@@ -86,6 +86,7 @@ void ductile_transfer_destroy(ductile_transfer* transfer) { delete transfer; }
 const int32_t* ductile_transfer_origins(const ductile_transfer* transfer, int kind) {
   if (transfer == nullptr) return nullptr;
   const meshadapt::Origins& origins = transfer->origins;
+  if (kind == DUCTILE_FACETS && is_surface(transfer->after.mesh)) kind = DUCTILE_ELEMENTS;
   return kind == DUCTILE_VERTICES   ? c::signed_data(origins.vertex)
          : kind == DUCTILE_FACETS   ? c::signed_data(origins.facet)
          : kind == DUCTILE_ELEMENTS ? c::signed_data(origins.element)

@@ -29,7 +29,10 @@ bool Rescue<Dim>::accepts(AdaptedMesh& adapted, bool may_meet) {
   if (!may_meet && attempts_ == 1) return true;
   const AdjacentMesh now(input_.executor(), adapted.mesh);
   const auto faults = adapted_faults(input_, now, tolerance_);
-  if (faults.empty() || options_.lock_boundary) {
+  // A locked boundary cannot meet itself, but that of a surface is its rims.
+  const bool is_rigid =
+      options_.lock_boundary && (options_.hausdorff_tolerance == 0 || !is_surface(input_.mesh()));
+  if (faults.empty() || is_rigid) {
     complete(adapted.report, faults.empty());
     return true;
   }

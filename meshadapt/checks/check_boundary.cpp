@@ -13,7 +13,7 @@ namespace {
 
 template <int Dim>
 std::vector<std::string> check(const runtime::Executor& executor, const AnyMesh& mesh) {
-  const CrossingFacets<Dim> crossing(mesh);
+  const CrossingFacets<Dim> crossing(executor, mesh);
   Problems problems(executor);
   problems.expect_none(
       crossing.size(), [&](std::size_t f) { return crossing.partner_of(f) != no_index; },

@@ -26,10 +26,11 @@ struct LooseContact {
 template <int Dim>
 class LooseVertices {
  public:
-  explicit LooseVertices(const AnyMesh& mesh)
+  LooseVertices(const runtime::Executor& executor, const AnyMesh& mesh)
       : mesh_(mesh),
         slack_(scale_of<Dim>(mesh).slack),
-        index_(facets_in<Dim>(mesh).size(), [&](std::size_t f) { return box_around(points(f)); }) {
+        index_(executor, facets_in<Dim>(mesh).size(),
+               [&](std::size_t f) { return box_around(points(f)); }) {
     for (const auto& corners : facets_in<Dim>(mesh).vertices)
       vertices_.insert(vertices_.end(), corners.begin(), corners.end());
     std::sort(vertices_.begin(), vertices_.end());
@@ -75,7 +76,7 @@ class LooseVertices {
 
 template <int Dim>
 std::vector<std::string> loose_in(const runtime::Executor& executor, const AnyMesh& mesh) {
-  const LooseVertices<Dim> loose(mesh);
+  const LooseVertices<Dim> loose(executor, mesh);
   const auto& vertices = loose.vertices();
   auto contact_of = runtime::make_vector<LooseContact>(executor, vertices.size());
   runtime::parallel_for(executor, vertices.size(),

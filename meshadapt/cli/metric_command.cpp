@@ -199,7 +199,7 @@ Job read_job(const Arguments& arguments) {
 
 // ---- The work ----
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class Work {
  public:
   Work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
@@ -220,13 +220,12 @@ class Work {
 
   std::string summary() const {
     double finest = 0, coarsest = std::numeric_limits<double>::infinity();
-    for (const Metric<Dim>& metric : metric_of_)
+    for (const Metric<Space>& metric : metric_of_)
       for (const double value : meshadapt::principal_axes(metric).value) {
         finest = std::max(finest, value);
         coarsest = std::min(coarsest, value);
       }
-    const double complexity = meshadapt::complexity<Dim>(
-        executor_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_), metric_of_);
+    const double complexity = meshadapt::complexity(executor_, fixed_mesh(), metric_of_);
     const double elements = complexity * elements_per_unit_;
     char text[200];
     std::snprintf(
@@ -259,8 +258,13 @@ class Work {
       meshadapt::intersect(executor_, metric_of_, metrics(job_.fields[i]));
   }
 
-  std::vector<Metric<Dim>> metrics(const fs::path& path) {
-    return meshadapt::tensors_of<Dim>(executor_, read_metric(path, mesh_, warnings_, goal_.bounds));
+  meshadapt::FixedMesh<Dim, Space> fixed_mesh() const {
+    return meshadapt::make_fixed_mesh<Dim, Space>(executor_, mesh_);
+  }
+
+  std::vector<Metric<Space>> metrics(const fs::path& path) {
+    return meshadapt::tensors_of<Space>(executor_,
+                                        read_metric(path, mesh_, warnings_, goal_.bounds));
   }
 
   void make() {
@@ -270,19 +274,19 @@ class Work {
     field.name = words.back();
     const auto made = meshadapt::solution_metric(executor_, mesh_, field,
                                                  {goal_, job_.gradation, job_.fit.recovery});
-    metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
+    metric_of_ = meshadapt::tensors_of<Space>(executor_, made.metric);
     check(made.fit);
   }
 
   void imply() {
     metric_of_ =
-        meshadapt::tensors_of<Dim>(executor_, meshadapt::implied_tensors(executor_, mesh_));
+        meshadapt::tensors_of<Space>(executor_, meshadapt::implied_tensors(executor_, mesh_));
   }
 
   void size() {
     const AnyField field =
         meshadapt::size_field(executor_, mesh_, job_.sizes.sizes_for(mesh_, warnings_));
-    metric_of_ = meshadapt::tensors_of<Dim>(executor_, meshadapt::metric_of(field, mesh_));
+    metric_of_ = meshadapt::tensors_of<Space>(executor_, meshadapt::metric_of(field, mesh_));
   }
 
   /// The sizes of isotropic metrics; bounds and gradation keep them isotropic.
@@ -290,19 +294,18 @@ class Work {
     std::vector<double> size_of(metric_of_.size());
     runtime::parallel_for(executor_, size_of.size(),
                           [&](std::size_t v) { size_of[v] = 1 / std::sqrt(metric_of_[v].m[0]); });
-    return meshadapt::scalar_field(Dim, std::move(size_of), job_.output.string());
+    return meshadapt::scalar_field(Space, std::move(size_of), job_.output.string());
   }
 
   void scale() {
-    check(meshadapt::scale_to_complexity<Dim>(
-        executor_, metric_of_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
+    check(meshadapt::scale_to_complexity(
+        executor_, metric_of_, fixed_mesh(),
         {goal_.complexity, goal_.bounds, job_.gradation, goal_.elements}));
   }
 
   void grade() {
-    const auto report = meshadapt::limit_gradation(
-        executor_, metric_of_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
-        {.factor = job_.gradation});
+    const auto report =
+        meshadapt::limit_gradation(executor_, metric_of_, fixed_mesh(), {.factor = job_.gradation});
     if (!report.converged)
       warnings_.push_back("sizes still grow faster than asked for in places, after " +
                           std::to_string(report.sweeps) + " sweeps over the edges");
@@ -338,7 +341,7 @@ class Work {
   meshadapt::Warnings& warnings_;
   meshadapt::HessianMetricOptions goal_;
   double elements_per_unit_ = 1 / meshadapt::complexity_of_elements(Dim, 1);  ///< of complexity
-  std::vector<Metric<Dim>> metric_of_;                                        // [vertex]
+  std::vector<Metric<Space>> metric_of_;                                      // [vertex]
 };
 
 void write(const Job& job, const AnyMesh& mesh, const AnyField& field, const std::string& summary) {
@@ -352,10 +355,10 @@ void write(const Job& job, const AnyMesh& mesh, const AnyField& field, const std
                 meshadapt::printable(job.output.string()).c_str());
 }
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 void work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
           meshadapt::Warnings& warnings) {
-  Work<Dim> work(executor, job, file, warnings);
+  Work<Dim, Space> work(executor, job, file, warnings);
   const AnyField metric = work.run();
   const std::string summary = work.summary();  // which may find fault with the mesh: before writing
   print_warnings(warnings, job.verbosity);
@@ -373,8 +376,11 @@ int run(const Arguments& arguments) {
       write(job, file.mesh, distance.field, distance.summary);
       return done;
     }
-    file.mesh.dimension == 2 ? work<2>(executor, job, file, warnings)
-                             : work<3>(executor, job, file, warnings);
+    if (meshadapt::is_surface(file.mesh))
+      work<2, 3>(executor, job, file, warnings);
+    else
+      file.mesh.dimension == 2 ? work<2>(executor, job, file, warnings)
+                               : work<3>(executor, job, file, warnings);
     return done;
   });
 }

@@ -22,10 +22,10 @@ namespace ductile::meshadapt {
 template <int Dim>
 class CrossingFacets {
  public:
-  explicit CrossingFacets(const AnyMesh& mesh)
+  CrossingFacets(const runtime::Executor& executor, const AnyMesh& mesh)
       : mesh_(mesh),
         slack_(scale_of<Dim>(mesh).slack),
-        index_(facets().size(), [&](std::size_t f) { return box_around(points(f)); }) {}
+        index_(executor, facets().size(), [&](std::size_t f) { return box_around(points(f)); }) {}
 
   std::size_t size() const { return facets().size(); }
 
@@ -35,7 +35,7 @@ class CrossingFacets {
     std::size_t first = no_index;
     const std::array<Vector<Dim>, Dim> here = points(f);
     index_.each_meeting(box_around(here), [&](std::size_t g) {
-      if (g <= f || g >= first) return;
+      if (g <= f || g >= first || share_side(f, g)) return;
       const std::array<Vector<Dim>, Dim> there = points(g);
       if ((crosses(f, here, g, there) || (Dim == 3 && crosses(g, there, f, here))) &&
           depth(here, there) > slack_)
@@ -59,6 +59,13 @@ class CrossingFacets {
   bool has_vertex(std::size_t f, std::uint32_t v) const {
     const auto& corners = facets().vertices[f];
     return std::find(corners.begin(), corners.end(), v) != corners.end();
+  }
+
+  /// Do two facets have all corners in common but one, so that they cannot cross?
+  bool share_side(std::size_t f, std::size_t g) const {
+    std::size_t common = 0;
+    for (const std::uint32_t v : facets().vertices[g]) common += has_vertex(f, v) ? 1 : 0;
+    return common + 1 >= Dim;
   }
 
   /// Does an edge of facet g go through facet f?

@@ -33,7 +33,7 @@ template <int Dim>
 void find_crossings(const Executor& executor, const AnyMesh& before, const AnyMesh& after,
                     std::vector<Box<Dim>>& places) {
   const auto crossings = [&](const AnyMesh& mesh) {
-    const CrossingFacets<Dim> crossing(mesh);
+    const CrossingFacets<Dim> crossing(executor, mesh);
     return runtime::parallel_collect<Box<Dim>>(
         executor, crossing.size(), [&](std::size_t f, auto&& append) {
           const std::size_t g = crossing.partner_of(f);

@@ -40,6 +40,11 @@ class Divider {
       }
   }
 
+  std::size_t count() const {
+    const std::size_t n = finest_;
+    return Corners == 2 ? n : n * n;
+  }
+
   /// Calls visit(part) for each part, turned as the whole is.
   void each(auto&& visit) const {
     const int n = finest_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "ductile/runtime/parallel_for.hpp"
 #include "geometry/sheets_search.hpp"
 
 namespace ductile::meshadapt {
@@ -57,61 +59,75 @@ std::array<double, 3> weights_of(const std::array<Vector<3>, 3>& p, const Vector
 }  // namespace
 
 template <int Dim, std::size_t Corners>
-Sheets<Dim, Corners>::Sheets(const std::vector<Part>& parts, double tolerance,
-                             const std::vector<std::optional<Curved>>& curved,
-                             std::vector<Projection<Dim>> projection_of, double ridge_turn)
-    : tolerance_(tolerance),
-      turn_at_ends_(std::cos(share_of_ridge * std::acos(ridge_turn))),
-      projection_of_(std::move(projection_of)) {
-  divide(parts, curved);
-  shape_of_.reserve(parts_.size());
-  box_of_.reserve(parts_.size());
-  for (const Part& part : parts_) {
+Sheets<Dim, Corners>::Sheets(const runtime::Executor& executor, Shapes shapes)
+    : tolerance_(shapes.tolerance),
+      turn_at_ends_(std::cos(share_of_ridge * std::acos(shapes.ridge_turn))),
+      projection_of_(std::move(shapes.projection_of)) {
+  divide(executor, shapes);
+  shape_of_.resize(parts_.size());
+  runtime::parallel_for(executor, parts_.size(), [&](std::size_t p) {
+    const Part& part = parts_[p];
     const auto [centre, radius] = sphere_around(part.corner);
-    box_of_.push_back(box_around(part.corner));
     const bool is_noise = dot(part.turned, part.turned) > 0;
-    shape_of_.push_back(
-        {centre, is_noise ? part.turned : direction_of(part.corner), radius * (1 + 1e-9)});
-  }
-  tree_ = std::make_unique<Tree>(first_part_.size() - 1, [&](std::size_t facet) {
-    auto box = Box<Dim>::empty();
-    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
-      box = join(box, box_of_[part]);
-    return box;
+    shape_of_[p] = {centre, is_noise ? part.turned : direction_of(part.corner), radius * (1 + 1e-9),
+                    part.sheet, part.two_sided};
   });
+  std::vector<std::uint32_t> order(parts_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  tree_ = std::make_unique<Tree>(executor, std::move(order),
+                                 [&](std::size_t p) { return box_around(parts_[p].corner); });
 }
 
 template <int Dim, std::size_t Corners>
 Sheets<Dim, Corners>::~Sheets() = default;
 
-/// Makes flat parts that are within a share of the tolerance.
+/// Makes flat parts that are within a share of the tolerance, along a space-filling curve through
+/// the facets.
 template <int Dim, std::size_t Corners>
-void Sheets<Dim, Corners>::divide(const std::vector<Part>& parts,
-                                  const std::vector<std::optional<Curved>>& curved) {
+void Sheets<Dim, Corners>::divide(const runtime::Executor& executor, const Shapes& shapes) {
   constexpr double share = 1.0 / 8;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
-    if (curved.empty() || !curved[p]) {
-      parts_.push_back(parts[p]);
-      origin_of_.push_back({none, {}});
-      continue;
-    }
-    const auto number = static_cast<std::uint32_t>(curved_.size());
-    curved_.push_back(*curved[p]);
-    Divider<Dim, Corners>(*curved[p], share * tolerance_).each([&](const auto& part) {
-      parts_.push_back({part.corner, parts[p].sheet, parts[p].two_sided, parts[p].turned});
-      origin_of_.push_back({number, part.weight});
+  const auto& facets = shapes.facets;
+  const auto& curved = shapes.curved;
+  const auto is_curved = [&](std::size_t f) { return !curved.empty() && curved[f]; };
+  const auto divider = [&](std::size_t f) {
+    return Divider<Dim, Corners>(*curved[f], share * tolerance_);
+  };
+  const auto box_of = [&](std::size_t f) {
+    auto box = box_around(facets[f].corner);
+    if (is_curved(f))
+      divider(f).each([&](const auto& part) { box = join(box, box_around(part.corner)); });
+    return box;
+  };
+  const std::vector<std::uint32_t> order = hilbert_order(executor, facets.size(), box_of);
+  std::vector<std::size_t> first(facets.size() + 1);  // [place in the order], its first part
+  runtime::parallel_for(executor, facets.size(), [&](std::size_t i) {
+    first[i] = is_curved(order[i]) ? divider(order[i]).count() : 1;
+  });
+  runtime::exclusive_scan(executor, std::span(first));
+  curved_.resize(curved.size());
+  parts_.resize(first.back());
+  origin_of_.resize(first.back());
+  runtime::parallel_for(executor, facets.size(), [&](std::size_t i) {
+    const std::uint32_t f = order[i];
+    std::size_t p = first[i];
+    parts_[p] = facets[f];
+    origin_of_[p] = {f, is_curved(f), {}};
+    if (!is_curved(f)) return;
+    curved_[f] = *curved[f];
+    divider(f).each([&](const auto& part) {
+      parts_[p] = facets[f];
+      parts_[p].corner = part.corner;
+      origin_of_[p++] = {f, true, part.weight};
     });
-  }
-  first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
+  });
 }
 
-/// The corners of what a flat part is of.
+/// The corners of the facet that a flat part comes from.
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::facet_of(std::uint32_t part) const -> Points {
-  if (origin_of_[part].curved == none) return parts_[part].corner;
+  if (!origin_of_[part].is_curved) return parts_[part].corner;
   Points corners;
-  for (std::size_t i = 0; i < Corners; ++i) corners[i] = curved_[origin_of_[part].curved].corner(i);
+  for (std::size_t i = 0; i < Corners; ++i) corners[i] = curved_[origin_of_[part].facet].corner(i);
   return corners;
 }
 
@@ -119,9 +135,31 @@ template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
   // Parts farther away than that are turned by more somewhere.
   const double reach = std::min(tolerance_, 0.5 * sphere_around(simplex).radius);
-  if (cover(simplex, sheet, {*this, direction_of(simplex), reach})) return true;
+  const Search search{*this, direction_of(simplex), reach};
+  if (cover_closely(simplex, sheet, search) || cover(simplex, sheet, search)) return true;
   const auto direction = direction_around(simplex, sheet);
   return direction && cover(simplex, sheet, {*this, *direction, tolerance_});
+}
+
+/// Is the sheet a graph over the simplex, so close to it that nothing else is near enough to
+/// matter? Mostly it is, and that takes few parts to tell.
+template <int Dim, std::size_t Corners>
+bool Sheets<Dim, Corners>::cover_closely(const Points& simplex, std::uint32_t sheet,
+                                         const Search& search) const {
+  if constexpr (Dim < 3 || Corners < 3) return false;
+  constexpr double share = 0.4;  // flat parts alone may be off by 1/8
+  const double margin = share * search.tolerance;
+  Near covering;
+  bool is_alone = true;
+  each_meeting(box_around(simplex, margin), [&](std::uint32_t part) {
+    const double turn = search.turn(part);
+    const bool covers = turn >= Search::least_turn && shape_of_[part].sheet == sheet;
+    if (covers) covering.push_back(part);
+    is_alone = is_alone && (covers || (turn > -0.01 && shape_of_[part].sheet != sheet));
+  });
+  if (!is_alone || covering.empty()) return false;
+  const auto graph = search.graph_over(simplex, covering);
+  return graph.whole && 2 * graph.most_aside <= margin;
 }
 
 /// How the sheet is turned closest to a simplex that is low, if there is noise around.
@@ -143,14 +181,14 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::direction_around(const Points& 
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
                                  const Search& search) const {
-  constexpr double least_turn = 0.70710678118654752;  // the cosine of 45 degrees
   Around around;
   Near beside;  // of other sheets, turned about as at a right angle
   each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
-    if (parts_[part].sheet != sheet && std::abs(turn) < Search::steepest) beside.push_back(part);
-    if (parts_[part].sheet == sheet && turn > 0)
-      (turn >= least_turn ? around.covering : around.steep).push_back(part);
+    const bool is_beside = shape_of_[part].sheet != sheet;
+    if (is_beside && std::abs(turn) < Search::steepest) beside.push_back(part);
+    if (!is_beside && turn > 0)
+      (turn >= Search::least_turn ? around.covering : around.steep).push_back(part);
     if (turn < -0.01) around.facing.push_back(part);  // not what is at a right angle, nearly
   });
   if (around.covering.empty()) return false;
@@ -169,10 +207,10 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& closest) const
     -> std::optional<typename Curved::Weights> {
-  if (origin_of_[closest.part].curved == none) return {};
+  if (!origin_of_[closest.part].is_curved) return {};
   constexpr int steps = 3;
   const Origin& origin = origin_of_[closest.part];
-  const Curved& curved = curved_[origin.curved];
+  const Curved& curved = curved_[origin.facet];
   const auto share = weights_of(parts_[closest.part].corner, closest.point);
   typename Curved::Weights weights{};
   for (std::size_t i = 0; i < Corners; ++i)
@@ -189,7 +227,7 @@ auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& c
 template <int Dim, std::size_t Corners>
 Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
   const auto weights = weights_at(point, closest);
-  return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
+  return weights ? curved_[origin_of_[closest.part].facet].at(*weights) : closest.point;
 }
 
 /// The unit normal of a facet there, or the direction that counts as it; for an edge, its tangent.
@@ -198,7 +236,7 @@ Vector<Dim> Sheets<Dim, Corners>::direction_at(const Vector<Dim>& point,
                                                const Closest& closest) const {
   const auto weights = counts_as_turned(closest.part) ? std::nullopt : weights_at(point, closest);
   if (!weights) return shape_of_[closest.part].direction;
-  const Curved& curved = curved_[origin_of_[closest.part].curved];
+  const Curved& curved = curved_[origin_of_[closest.part].facet];
   return direction_along<Dim, Corners>(curved.tangents(*weights));
 }
 
@@ -241,12 +279,11 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest_at(const Vector<Dim>& point, const Closest& closest) const
     -> Nearest {
-  const auto next = std::upper_bound(first_part_.begin(), first_part_.end(), closest.part);
-  const auto facet = static_cast<std::uint32_t>(next - first_part_.begin() - 1);
+  const std::uint32_t facet = origin_of_[closest.part].facet;
   Nearest nearest{parts_[closest.part].sheet, facet, 0, closest.point,
                   shape_of_[closest.part].direction};
   if (const auto weights = weights_at(point, closest)) {
-    const Curved& curved = curved_[origin_of_[closest.part].curved];
+    const Curved& curved = curved_[facet];
     nearest.point = curved.at(*weights);
     nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
   }
@@ -279,15 +316,13 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
     -> std::optional<Nearest> {
   Closest best;
   double square = best.distance;
-  tree_->visit_near(point, square, [&](std::size_t place) {
-    const std::uint32_t facet = tree_->order()[place];
-    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part) {
-      if (is_wanted[parts_[part].sheet] == 0) continue;
-      const Vector<Dim> there = closest_point(parts_[part].corner, point);
-      const double distance = norm(there - point);
-      if (distance < best.distance) best = {distance, there, part};
-    }
-    square = best.distance * best.distance;
+  tree_->visit_near(point, square, [&](std::size_t part) {
+    if (is_wanted[parts_[part].sheet] == 0) return;
+    const Vector<Dim> there = closest_point(parts_[part].corner, point);
+    const double distance = norm(there - point);
+    if (distance >= best.distance) return;
+    best = {distance, there, static_cast<std::uint32_t>(part)};
+    square = distance * distance;
   });
   if (!std::isfinite(best.distance)) return {};
   // Steps to the closest point of a curved facet converge for points that are closer to it than its

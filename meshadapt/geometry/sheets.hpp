@@ -14,6 +14,7 @@
 
 #include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "geometry/divided.hpp"
 #include "geometry/projection.hpp"
 #include "mesh/box.hpp"
@@ -58,13 +59,24 @@ class Sheets {
     Vector<Dim> turned = {};  ///< unit normal that it counts as having, if not 0
   };
 
-  /// `curved` is what parts are curved into, nothing where they are flat; or empty if all are.
-  /// `projection_of` is [sheet], empty where curved pieces are all that is known of it; or empty.
-  /// `ridge_turn` is the cosine of the angle from which on facets that meet make a ridge.
-  /// Throws std::bad_alloc. Linear in the parts but for a logarithm.
-  Sheets(const std::vector<Part>& parts, double tolerance,
-         const std::vector<std::optional<Curved>>& curved = {},
-         std::vector<Projection<Dim>> projection_of = {}, double ridge_turn = 0.70710678118654752);
+  /// What facets, or edges, are made into.
+  struct Shapes {
+    const std::vector<Part>& facets;
+    double tolerance;
+    /// [facet], nothing where it stays flat; or empty if all do.
+    const std::vector<std::optional<Curved>>& curved;
+    /// [sheet], empty where curved pieces are all that is known of it; or empty.
+    std::vector<Projection<Dim>> projection_of = {};
+    /// The cosine of the angle from which on facets that meet make a ridge.
+    double ridge_turn = 0.70710678118654752;
+  };
+  /// Throws std::bad_alloc. Linear in the facets, times a logarithm. Thread safety: one caller;
+  /// runs on the executor.
+  Sheets(const runtime::Executor& executor, Shapes shapes);
+  /// The same on one thread, of facets that stay flat unless they are curved.
+  Sheets(const std::vector<Part>& facets, double tolerance,
+         const std::vector<std::optional<Curved>>& curved = {})
+      : Sheets(runtime::Executor({.threads = 1}), {facets, tolerance, curved}) {}
   ~Sheets();
   Sheets(const Sheets&) = delete;
   Sheets& operator=(const Sheets&) = delete;
@@ -122,6 +134,8 @@ class Sheets {
     Vector<Dim> centre;
     Vector<Dim> direction;  // unit normal of a facet, or what it counts as; else along the edge
     double radius;          // of a sphere around the centre
+    std::uint32_t sheet;    // as in the part
+    bool two_sided;
   };
   struct Closest {
     double distance = std::numeric_limits<double>::infinity();
@@ -129,19 +143,21 @@ class Sheets {
     std::uint32_t part = 0;
   };
 
-  /// The curved simplex that a flat part comes from, and its place in it.
+  /// The facet that a flat part comes from, and its place in it, if that is curved.
   struct Origin {
-    std::uint32_t curved;  // its number, or none
+    std::uint32_t facet;
+    bool is_curved;
     decltype(DividedPart<Dim, Corners>::weight) weight;
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
   bool cover(const Points& simplex, std::uint32_t sheet, const Search& search) const;
+  bool cover_closely(const Points& simplex, std::uint32_t sheet, const Search& search) const;
   std::optional<Vector<Dim>> direction_around(const Points& simplex, std::uint32_t sheet) const;
   bool counts_as_turned(std::uint32_t part) const {
     return dot(parts_[part].turned, parts_[part].turned) > 0;
   }
-  void divide(const std::vector<Part>& parts, const std::vector<std::optional<Curved>>& curved);
+  void divide(const runtime::Executor& executor, const Shapes& shapes);
   Points facet_of(std::uint32_t part) const;
   std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,
                                                      const Closest& closest) const;
@@ -154,12 +170,10 @@ class Sheets {
 
   void each_meeting(const Box<Dim>& box, auto&& visit) const;
 
-  std::vector<Part> parts_;
-  std::vector<std::uint32_t> first_part_;  // [facet], and their number
-  std::vector<Origin> origin_of_;          // [part]
-  std::vector<Curved> curved_;
-  std::vector<Shape> shape_of_;   // [part]
-  std::vector<Box<Dim>> box_of_;  // [part], read by itself most of the time
+  std::vector<Part> parts_;        // those of a facet follow each other
+  std::vector<Origin> origin_of_;  // [part]
+  std::vector<Curved> curved_;     // [facet]; empty if all are flat
+  std::vector<Shape> shape_of_;    // [part]
   double tolerance_;
   double turn_at_ends_;                         // the least cosine there, in 2D
   std::vector<Projection<Dim>> projection_of_;  // [sheet], or empty

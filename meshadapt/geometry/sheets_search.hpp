@@ -20,7 +20,7 @@
 
 namespace ductile::meshadapt {
 
-/// A tree of the facets; the parts of each are looked at one by one.
+/// A tree of the flat parts, in the order of their numbers.
 template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
   using BoxHierarchy<Dim>::BoxHierarchy;
@@ -29,10 +29,7 @@ struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
 /// Calls visit(part) for each part whose box has a point in common with this one.
 template <int Dim, std::size_t Corners>
 void Sheets<Dim, Corners>::each_meeting(const Box<Dim>& box, auto&& visit) const {
-  tree_->each_meeting(box, [&](std::uint32_t facet) {
-    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
-      if (meet(box, box_of_[part])) visit(part);
-  });
+  tree_->each_meeting(box, visit);
 }
 
 /// Some parts, among which the closest to a point is looked for: first where it is likely, then
@@ -53,7 +50,11 @@ struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t
     for (std::size_t i = 0; i < this->size(); ++i) {
       const Vector<Dim> aside = sheets.shape_of_[(*this)[i]].centre - point;
       square_of[i] = dot(aside, aside);
-      if (std::pair(square_of[i], (*this)[i]) < std::pair(square_of[first], (*this)[first]))
+      const auto number = [&](std::size_t k) {
+        return std::pair(sheets.origin_of_[(*this)[k]].facet, (*this)[k]);
+      };
+      if (square_of[i] < square_of[first] ||
+          (square_of[i] == square_of[first] && number(i) < number(first)))
         first = i;
     }
     look((*this)[first]);
@@ -106,11 +107,12 @@ struct Sheets<Dim, Corners>::Search {
   const Sheets& sheets;
   Vector<Dim> direction;
   double tolerance;
-  static constexpr double steepest = 0.3;  // the cosine of 72 degrees
+  static constexpr double steepest = 0.3;                    // the cosine of 72 degrees
+  static constexpr double least_turn = 0.70710678118654752;  // of 45 degrees
 
   double turn(std::uint32_t part) const {
     const double cosine = dot(direction, sheets.shape_of_[part].direction);
-    return sheets.parts_[part].two_sided ? std::abs(cosine) : cosine;
+    return sheets.shape_of_[part].two_sided ? std::abs(cosine) : cosine;
   }
 
   /// Is there a gap between the sheet and this part, which faces it, or a part of the domain? Not
@@ -139,8 +141,8 @@ struct Sheets<Dim, Corners>::Search {
     const Points own = sheets.facet_of(part);
     std::uint32_t last = none;
     return std::any_of(others.begin(), others.end(), [&](std::uint32_t other) {
-      const std::uint32_t before = std::exchange(last, sheets.origin_of_[other].curved);
-      if (last != none && last == before) return false;
+      const std::uint32_t before = std::exchange(last, sheets.origin_of_[other].facet);
+      if (last == before) return false;
       const Points corners = sheets.facet_of(other);
       return std::any_of(corners.begin(), corners.end(),
                          [&](const Vector<Dim>& corner) { return has(own, corner); });
@@ -194,7 +196,7 @@ struct Sheets<Dim, Corners>::Search {
   Near inside(const Box<Dim>& box, const Near& parts) const {
     Near near;
     for (const std::uint32_t part : parts)
-      if (meet(box, sheets.box_of_[part])) near.push_back(part);
+      if (meet(box, sheets.tree_->box_at(part))) near.push_back(part);
     return near;
   }
   Around inside(const Box<Dim>& box, const Around& around) const {
@@ -258,13 +260,14 @@ struct Sheets<Dim, Corners>::Search {
   Graph graph_over(const Points& simplex, const Near& parts) const {
     constexpr double far = 1.5;  // more than what is turned by 45 degrees may have
     const Prism<Dim, Corners> prism(simplex);
+    typename Prism<Dim, Corners>::Clipping clipping;
     Graph graph{false, 0, simplex[0]};
     double share = 0;
     bool looked = false;
     for (const std::uint32_t part : parts) {
       const Shape& shape = sheets.shape_of_[part];
       if (prism.is_beside(shape.centre, shape.radius)) continue;
-      const auto inside = prism.inside(sheets.parts_[part].corner);
+      const auto& inside = prism.inside(sheets.parts_[part].corner, clipping);
       share += (folds_back(part) ? -1 : 1) * prism.share(inside);
       for (const auto& place : inside) {
         const double here = place.aside();
@@ -288,8 +291,9 @@ struct Sheets<Dim, Corners>::Search {
   /// Is the simplex below any of the parts, or above?
   bool is_below(const Points& simplex, const Near& parts) const {
     const Prism<Dim, Corners> prism(simplex);
+    typename Prism<Dim, Corners>::Clipping clipping;
     return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
-      return prism.share(prism.inside(sheets.parts_[part].corner)) > 1e-9;
+      return prism.share(prism.inside(sheets.parts_[part].corner, clipping)) > 1e-9;
     });
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 #include "geometry/boundary_parts.hpp"
 #include "geometry/divided.hpp"
 #include "geometry/projection.hpp"
@@ -30,18 +32,13 @@ class SurfaceMaker {
   std::shared_ptr<const Surface<Dim>> make() const {
     ModelInput<Dim> input = model_input();
     SmoothModel<Dim> model(parts_.executor, input);
-    const std::vector<Vector<Dim>> bends = bends_of(model);
-    constexpr int rounds = 4;
-    for (int round = 1; round <= rounds; ++round) {
-      if (!hold_facing(model, bends, round == rounds, input)) break;
-      model = SmoothModel<Dim>(parts_.executor, input);
-    }
-    std::vector<typename Sheets<Dim, Dim>::Part> facet_parts;
-    facet_parts.reserve(facets_.size());
-    for (std::uint32_t f = 0; f < facets_.size(); ++f)
-      facet_parts.push_back({points(corners(facets_[f])), facets_[f].patch,
-                             facets_[f].other != none,
-                             parts_.is_noise(f) ? parts_.noise_normals[f] : Vector<Dim>{}});
+    hold_facing(input, model);
+    std::vector<typename Sheets<Dim, Dim>::Part> facet_parts(facets_.size());
+    runtime::parallel_for(parts_.executor, facets_.size(), [&](std::size_t f) {
+      const auto i = static_cast<std::uint32_t>(f);
+      facet_parts[f] = {points(corners(facets_[f])), facets_[f].patch, facets_[f].other != none,
+                        parts_.is_noise(i) ? parts_.noise_normals[f] : Vector<Dim>{}};
+    });
     std::vector<typename Sheets<Dim, 2>::Part> edge_parts;
     typename SmoothModel<Dim>::template Pieces<2> edge_pieces;
     std::vector<typename Samples<Dim, 2>::Facet> sampled_edges;
@@ -58,9 +55,11 @@ class SurfaceMaker {
     const auto on_patches =
         projections_of_patches(mesh_, parts_.options.functions, {reach(), parts_.within.surface});
     expect_on(on_patches);
+    const double tolerance = parts_.within.surface;
     return std::shared_ptr<const Surface<Dim>>(new Surface<Dim>{
-        {facet_parts, parts_.within.surface, model.facets, on_patches, parts_.within.least_turn},
-        {edge_parts, parts_.within.surface, edge_pieces, on_curves(on_patches)},
+        {parts_.executor,
+         {facet_parts, tolerance, model.facets, on_patches, parts_.within.least_turn}},
+        {parts_.executor, {edge_parts, tolerance, edge_pieces, on_curves(on_patches)}},
         std::move(model.facet_samples),
         std::move(model.edge_samples)});
   }
@@ -158,26 +157,34 @@ class SurfaceMaker {
   /// Holds facets of which the model might come close to what they face, across a gap or a thin
   /// part of the domain: at least half of the way there is shall remain. Walls whose two sides,
   /// not joined smoothly at a nose, bend the same way keep it. A facet that is held takes the bend
-  /// of those around it away, so this is asked again; the last time walls do not count. Does it
-  /// hold any?
-  bool hold_facing(const SmoothModel<Dim>& model, const std::vector<Vector<Dim>>& bends,
-                   bool is_last, ModelInput<Dim>& input) const {
-    const auto box_of = [&](std::size_t f) { return box_around(points(corners(facets_[f]))); };
-    const BoxHierarchy<Dim> index(facets_.size(), box_of);
-    bool any = false;
-    for (std::uint32_t f = 0; f < facets_.size(); ++f) {
-      if (!model.facets[f] || facets_[f].other != none) continue;
-      const double reach = 4 * bend(*model.facets[f]);
-      bool& held = input.facets[f].held;
-      index.each_meeting(box_around(points(corners(facets_[f])), reach), [&](std::uint32_t g) {
-        const auto is_wall = [&] {
-          return !is_last && facets_[f].patch != facets_[g].patch && dot(bends[f], bends[g]) > 0;
-        };
-        held = held || (is_facing(f, g, reach) && (!is_wall() || comes_closer(model, f, g)));
-      });
-      any = any || held;
+  /// of those around it away, so this is asked again; the last time walls do not count.
+  void hold_facing(ModelInput<Dim>& input, SmoothModel<Dim>& model) const {
+    constexpr int rounds = 4;
+    const std::vector<Vector<Dim>> bends = bends_of(model);
+    const BoxHierarchy<Dim> index(parts_.executor, facets_.size(), [&](std::size_t f) {
+      return box_around(points(corners(facets_[f])));
+    });
+    for (int round = 1; round <= rounds; ++round) {
+      const auto is_wall = [&](std::uint32_t f, std::uint32_t g) {
+        return round < rounds && facets_[f].patch != facets_[g].patch &&
+               dot(bends[f], bends[g]) > 0;
+      };
+      const auto is_held = [&](std::size_t at) {
+        const auto f = static_cast<std::uint32_t>(at);
+        if (!model.facets[f] || facets_[f].other != none) return false;
+        const double reach = 4 * bend(*model.facets[f]);
+        bool held = input.facets[f].held;
+        index.each_meeting(box_around(points(corners(facets_[f])), reach), [&](std::uint32_t g) {
+          held = held || (is_facing(f, g, reach) && (!is_wall(f, g) || comes_closer(model, f, g)));
+        });
+        input.facets[f].held = held;
+        return held;
+      };
+      if (!runtime::parallel_reduce(parts_.executor, facets_.size(), false, is_held,
+                                    std::logical_or<>()))
+        return;
+      model = SmoothModel<Dim>(parts_.executor, input);
     }
-    return any;
   }
 
   /// The model is no farther than that from the facet.

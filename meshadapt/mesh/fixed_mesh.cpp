@@ -23,12 +23,12 @@ using runtime::parallel_for;
 
 namespace {
 
-template <int Dim>
+template <int Dim, int Space>
 class FixedMeshMaker {
  public:
   FixedMeshMaker(const Executor& executor, const AnyMesh& any) : executor_(executor), any_(any) {}
 
-  FixedMesh<Dim> make() {
+  FixedMesh<Dim, Space> make() {
     check();
     place_vertices();
     measure_elements();
@@ -42,8 +42,8 @@ class FixedMeshMaker {
 
   void check() const {
     const auto& elements = elements_in<Dim>(any_).vertices;
-    if (any_.dimension != Dim)
-      fail("expected dimension " + std::to_string(Dim) + ", found " +
+    if (any_.dimension != Space)
+      fail("expected dimension " + std::to_string(Space) + ", found " +
            std::to_string(any_.dimension));
     expect_coordinates(any_);
     if (elements.empty()) {
@@ -60,24 +60,35 @@ class FixedMeshMaker {
   void place_vertices() {
     mesh_.position_of.resize(any_.vertex_count());
     parallel_for(executor_, mesh_.vertex_count(),
-                 [&](std::size_t v) { mesh_.position_of[v] = position_in<Dim>(any_, v); });
+                 [&](std::size_t v) { mesh_.position_of[v] = position_in<Space>(any_, v); });
   }
 
   void measure_elements() {
     mesh_.corners_of = elements_in<Dim>(any_).vertices;
     mesh_.volume_of.resize(mesh_.element_count());
     parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
-      const double determinant = plain_determinant(mesh_.points(static_cast<ElementId>(e)));
-      if (determinant < 0) std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]);
-      mesh_.volume_of[e] = std::abs(determinant) / (Dim == 2 ? 2 : 6);
+      const auto points = mesh_.points(static_cast<ElementId>(e));
+      if constexpr (Dim < Space) {
+        mesh_.volume_of[e] = norm(facet_normal(points)) / 2;
+      } else {
+        const double determinant = plain_determinant(points);
+        if (determinant < 0) std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]);
+        mesh_.volume_of[e] = std::abs(determinant) / (Dim == 2 ? 2 : 6);
+      }
     });
     const std::size_t bad = first_bad(executor_, elements_in<Dim>(any_).size(), [&](std::size_t e) {
       const double volume = mesh_.volume_of[e];
-      return !(volume > 0 && std::isfinite(volume));
+      const bool has_volume = Dim < Space ? are_distinct(mesh_.corners_of[e]) : volume > 0;
+      return !(has_volume && std::isfinite(volume));
     });
     if (bad != no_index)
       fail(entry(elements_array<Dim>(), element_name<Dim>(), bad) +
            " has no volume; remove or repair it");
+  }
+
+  static bool are_distinct(Corners<Dim> corners) {
+    std::sort(corners.begin(), corners.end());
+    return std::adjacent_find(corners.begin(), corners.end()) == corners.end();
   }
 
   /// The neighbour across a crowded facet is ambiguous, so the facet counts as a boundary.
@@ -111,14 +122,14 @@ class FixedMeshMaker {
 
   const Executor& executor_;
   const AnyMesh& any_;
-  FixedMesh<Dim> mesh_;
+  FixedMesh<Dim, Space> mesh_;
 };
 
 }  // namespace
 
-template <int Dim>
-FixedMesh<Dim> make_fixed_mesh(const Executor& executor, const AnyMesh& mesh) {
-  return FixedMeshMaker<Dim>(executor, mesh).make();
+template <int Dim, int Space>
+FixedMesh<Dim, Space> make_fixed_mesh(const Executor& executor, const AnyMesh& mesh) {
+  return FixedMeshMaker<Dim, Space>(executor, mesh).make();
 }
 
 template <int Dim>
@@ -148,6 +159,7 @@ double integral(const Executor& executor, const FixedMesh<Dim>& mesh,
 }
 
 template FixedMesh<2> make_fixed_mesh(const Executor&, const AnyMesh&);
+template FixedMesh<2, 3> make_fixed_mesh(const Executor&, const AnyMesh&);
 template FixedMesh<3> make_fixed_mesh(const Executor&, const AnyMesh&);
 template std::array<Vector<2>, 3> hat_gradients<2>(const std::array<Vector<2>, 3>&);
 template std::array<Vector<3>, 4> hat_gradients<3>(const std::array<Vector<3>, 4>&);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
@@ -35,12 +36,6 @@ class Prism {
   class Part {
    public:
     Part() : size_(0) {}
-    Part(const Part& other) { *this = other; }
-    Part& operator=(const Part& other) {  // copies the existing corners only
-      size_ = other.size_;
-      std::copy_n(other.places_.begin(), size_, places_.begin());
-      return *this;
-    }
     void push_back(const Place& place) { places_[size_++] = place; }
     void clear() { size_ = 0; }
     std::size_t size() const { return size_; }
@@ -77,21 +72,28 @@ class Prism {
     for (std::size_t i = 0; i < gradient_.size(); ++i) size_[i] = norm(gradient_[i]);
   }
 
+  /// Room for the steps of inside(), to use again and again.
+  using Clipping = std::array<Part, 2>;
+
   /// The part of this simplex in the prism: clipped by one side after another (Sutherland and
-  /// Hodgman, Comm. ACM 17, 1974).
-  Part inside(const Points& simplex) const {
-    Part part;
+  /// Hodgman, Comm. ACM 17, 1974). Refers to `clipping`.
+  const Part& inside(const Points& simplex, Clipping& clipping) const {
+    Part *part = &clipping[0], *next = &clipping[1];
+    part->clear();
     unsigned beyond_any = 0, beyond_all = ~0U;  // sides that some, or all, corners lie beyond
     for (const Vector<Dim>& point : simplex) {
-      part.push_back(place(point));
-      const unsigned beyond = sides_beyond(part[part.size() - 1]);
+      part->push_back(place(point));
+      const unsigned beyond = sides_beyond((*part)[part->size() - 1]);
       beyond_any |= beyond;
       beyond_all &= beyond;
     }
-    if (beyond_all != 0) part.clear();
-    for (std::size_t side = 0; side < Corners && !part.empty(); ++side)
-      if ((beyond_any >> side & 1) != 0) part = cut(part, side);
-    return part;
+    if (beyond_all != 0) part->clear();
+    for (std::size_t side = 0; side < Corners && !part->empty(); ++side) {
+      if ((beyond_any >> side & 1) == 0) continue;
+      cut(*part, side, *next);
+      std::swap(part, next);
+    }
+    return *part;
   }
 
   /// Does the sphere certainly not reach into the prism?
@@ -159,8 +161,8 @@ class Prism {
     return sides;
   }
 
-  static Part cut(const Part& part, std::size_t side) {
-    Part result;
+  static void cut(const Part& part, std::size_t side, Part& result) {
+    result.clear();
     const Place* here = part.end() - 1;
     double a = weight(*here, side);
     for (const Place& next : part) {
@@ -170,7 +172,6 @@ class Prism {
       here = &next;
       a = b;
     }
-    return result;
   }
 
   static Place between(const Place& a, const Place& b, double t) {

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "core/first_bad.hpp"
+#include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "metric/expect_metrics.hpp"
+#include "metric/interpolation.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -17,17 +19,17 @@ using runtime::Executor;
 namespace {
 
 /// The metrics to be scaled, their mesh, and the goal.
-template <int Dim>
+template <int Dim, int Space>
 struct Scaling {
-  std::vector<Metric<Dim>>& metric_of;
-  const FixedMesh<Dim>& mesh;
+  std::vector<Metric<Space>>& metric_of;
+  const FixedMesh<Dim, Space>& mesh;
   const ComplexityGoal& goal;
 };
 
 /// Grades the metrics until squared lengths exceed what they may be by this at most; returns the
 /// complexity over the goal.
-template <int Dim>
-double take_graded(const Executor& executor, double tolerance, const Scaling<Dim>& scaling) {
+template <int Dim, int Space>
+double take_graded(const Executor& executor, double tolerance, const Scaling<Dim, Space>& scaling) {
   limit_gradation(executor, scaling.metric_of, scaling.mesh,
                   {.factor = scaling.goal.gradation, .tolerance = tolerance});
   return complexity(executor, scaling.mesh, scaling.metric_of) / scaling.goal.complexity;
@@ -35,8 +37,8 @@ double take_graded(const Executor& executor, double tolerance, const Scaling<Dim
 
 /// Multiplies graded metrics by one factor of 1 or more, so that they have the complexity. Sizes
 /// grow by the less per unit of metric length, so that they stay graded.
-template <int Dim>
-double take_finer(const Executor& executor, double share, const Scaling<Dim>& scaling) {
+template <int Dim, int Space>
+double take_finer(const Executor& executor, double share, const Scaling<Dim, Space>& scaling) {
   const double factor = std::max(1.0, std::pow(1 / share, 2.0 / Dim));
   runtime::parallel_for(executor, scaling.metric_of.size(),
                         [&](std::size_t v) { scaling.metric_of[v] *= factor; });
@@ -47,9 +49,9 @@ double take_finer(const Executor& executor, double share, const Scaling<Dim>& sc
 /// Looks for the factor by a secant of logarithms: grading adds the less, in proportion, the finer
 /// the metric is, so the complexity grows with the factor at most to the power d / 2. Near the goal
 /// is enough, and less than it is best: what is missing then takes no more grading.
-template <int Dim>
-MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, double start,
-                       const Scaling<Dim>& scaling) {
+template <int Dim, int Space>
+MetricFit scale_graded(const Executor& executor, const Spectrum<Space>& spectrum, double start,
+                       const Scaling<Dim, Space>& scaling) {
   constexpr int most_passes = 20;
   constexpr double near = 0.85, aim = 0.93, tolerance = 0.02, roughly = 0.05;
   constexpr double least_slope = 0.1, first_slope = Dim / 3.0, most_slope = 0.5 * Dim;
@@ -123,20 +125,26 @@ void expect_goal(const ComplexityGoal& goal) {
 }
 
 /// scale_to_complexity() with a goal of complexity.
-template <int Dim>
-MetricFit scale(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
-                const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
-  Spectrum<Dim> spectrum{std::vector<PrincipalAxes<Dim>>(metric_of.size()), goal.bounds};
+template <int Dim, int Space>
+MetricFit scale(const Executor& executor, std::vector<Metric<Space>>& metric_of,
+                const FixedMesh<Dim, Space>& mesh, const ComplexityGoal& goal) {
+  Spectrum<Space> spectrum{std::vector<PrincipalAxes<Space>>(metric_of.size()), goal.bounds};
   runtime::parallel_for(executor, metric_of.size(),
                         [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });
   const double now = complexity(executor, mesh, metric_of);
   const double start = now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1;
-  if (goal.gradation > 0) return scale_graded(executor, spectrum, start, {metric_of, mesh, goal});
-  const double factor = fitting_factor(
-      [&](double f) { return spectrum.complexity(executor, mesh, f); }, goal.complexity, start);
+  if (goal.gradation > 0)
+    return scale_graded<Dim, Space>(executor, spectrum, start, {metric_of, mesh, goal});
+  const auto scaled = [&](double factor) {
+    if constexpr (Dim < Space)
+      return complexity(executor, mesh, spectrum.metrics(executor, factor));
+    else
+      return spectrum.complexity(executor, mesh.share_of, factor);
+  };
+  const double factor = fitting_factor(scaled, goal.complexity, start);
   metric_of = spectrum.metrics(executor, factor);
   MetricFit fit;
-  fit.complexity = spectrum.complexity(executor, mesh, factor);
+  fit.complexity = scaled(factor);
   fit.reached = std::abs(fit.complexity / goal.complexity - 1) < 1e-6;
   return fit;
 }
@@ -149,21 +157,32 @@ double complexity_of_elements(int dimension, double elements) {
   return elements / (dimension == 2 ? 2.25 : 9.5);
 }
 
-template <int Dim>
-double complexity(const Executor& executor, const FixedMesh<Dim>& mesh,
-                  const std::vector<Metric<Dim>>& metric_of) {
+template <int Dim, int Space>
+double complexity(const Executor& executor, const FixedMesh<Dim, Space>& mesh,
+                  const std::vector<Metric<Space>>& metric_of) {
   expect_metric_everywhere(executor, metric_of, mesh.vertex_count(), "metric_of");
-  return runtime::parallel_reduce(
-      executor, metric_of.size(), 0.0,
-      [&](std::size_t v) {
-        return mesh.share_of[v] * std::sqrt(std::max(0.0, determinant(metric_of[v])));
-      },
-      [](double a, double b) { return a + b; });
+  const auto of_vertex = [&](std::size_t v) {
+    return mesh.share_of[v] * std::sqrt(std::max(0.0, determinant(metric_of[v])));
+  };
+  const auto in_plane = [&](std::size_t e) {
+    const double area = mesh.volume_of[e];
+    if (!(area > 0)) return 0.0;
+    double sum = 0;
+    if constexpr (Dim < Space) {
+      const Vector<3> normal = unit(facet_normal(mesh.points(static_cast<ElementId>(e))));
+      for (const VertexId v : mesh.corners_of[e])
+        sum += area / 3 * std::exp(log_density_in_plane(metric_of[v], normal));
+    }
+    return sum;
+  };
+  const auto add = [](double a, double b) { return a + b; };
+  return Dim < Space ? runtime::parallel_reduce(executor, mesh.element_count(), 0.0, in_plane, add)
+                     : runtime::parallel_reduce(executor, metric_of.size(), 0.0, of_vertex, add);
 }
 
-template <int Dim>
-MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
-                              const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
+template <int Dim, int Space>
+MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Space>>& metric_of,
+                              const FixedMesh<Dim, Space>& mesh, const ComplexityGoal& goal) {
   expect_metric_everywhere(executor, metric_of, mesh.vertex_count(), "metric_of");
   expect_goal(goal);
   ComplexityGoal in_units = goal;
@@ -180,9 +199,12 @@ MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>
 }
 
 template double complexity(const Executor&, const FixedMesh<2>&, const std::vector<Metric<2>>&);
+template double complexity(const Executor&, const FixedMesh<2, 3>&, const std::vector<Metric<3>>&);
 template double complexity(const Executor&, const FixedMesh<3>&, const std::vector<Metric<3>>&);
 template MetricFit scale_to_complexity(const Executor&, std::vector<Metric<2>>&,
                                        const FixedMesh<2>&, const ComplexityGoal&);
+template MetricFit scale_to_complexity(const Executor&, std::vector<Metric<3>>&,
+                                       const FixedMesh<2, 3>&, const ComplexityGoal&);
 template MetricFit scale_to_complexity(const Executor&, std::vector<Metric<3>>&,
                                        const FixedMesh<3>&, const ComplexityGoal&);
 

@@ -190,18 +190,18 @@ class DefaultMetric {
   std::vector<double> volume_of_;      // [element], times 2 or 6
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 AnyField implied_tensors_in(const runtime::Executor& executor, const AnyMesh& any) {
-  const auto mesh = make_fixed_mesh<Dim>(executor, any);
-  std::vector<Metric<Dim>> weighted(mesh.element_count());  // logarithms, times the volume
+  const auto mesh = make_fixed_mesh<Dim, Space>(executor, any);
+  std::vector<Metric<Space>> weighted(mesh.element_count());  // logarithms, times the volume
   runtime::parallel_for(executor, weighted.size(), [&](std::size_t e) {
     const auto metric = metric_of_element<Dim>(mesh.points(static_cast<ElementId>(e)));
     weighted[e] = mesh.volume_of[e] * logarithm(metric);
   });
-  std::vector<Metric<Dim>> metric_of(mesh.vertex_count(), isotropic<Dim>(1));
+  std::vector<Metric<Space>> metric_of(mesh.vertex_count(), isotropic<Space>(1));
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     if (!(mesh.share_of[v] > 0)) return;
-    Metric<Dim> sum;
+    Metric<Space> sum;
     for (const ElementId e : mesh.elements_of(static_cast<VertexId>(v))) sum += weighted[e];
     metric_of[v] = exponential(1 / ((Dim + 1) * mesh.share_of[v]) * sum);
   });
@@ -231,6 +231,7 @@ AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh) 
 AnyField implied_metric(const AnyMesh& mesh) { return isotropic_field(mesh, sizes_of(mesh)); }
 
 AnyField implied_tensors(const runtime::Executor& executor, const AnyMesh& mesh) {
+  if (is_surface(mesh)) return implied_tensors_in<2, 3>(executor, mesh);
   return mesh.dimension == 2 ? implied_tensors_in<2>(executor, mesh)
                              : implied_tensors_in<3>(executor, mesh);
 }

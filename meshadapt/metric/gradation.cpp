@@ -30,10 +30,11 @@ template <int Dim, int Space>
 const Vector<Space>& place_of(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.site_of[vertex].position;
 }
-template <int Dim>
-const Vector<Dim>& place_of(const FixedMesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+const Vector<Space>& place_of(const FixedMesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.position_of[vertex];
 }
+
 /// The Jacobi iteration of limit_gradation. After the first sweep only vertices with a neighbour
 /// that changed in the sweep before are looked at, and only against such neighbours: metrics never
 /// get coarser, so a bound that held still does.
@@ -189,16 +190,19 @@ GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Spa
   return Gradation<Space, Mesh<Dim, Space>>(executor, metric_of, mesh, options).run();
 }
 
-template <int Dim>
-GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
-                                const FixedMesh<Dim>& mesh, const GradationOptions& options) {
+template <int Dim, int Space>
+GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Space>>& metric_of,
+                                const FixedMesh<Dim, Space>& mesh,
+                                const GradationOptions& options) {
   expect_gradable(metric_of.size(), mesh.vertex_count(), options);
   expect_metrics(executor, metric_of, "metric_of");
-  return Gradation<Dim, FixedMesh<Dim>>(executor, metric_of, mesh, options).run();
+  return Gradation<Space, FixedMesh<Dim, Space>>(executor, metric_of, mesh, options).run();
 }
 
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&,
                                          const FixedMesh<2>&, const GradationOptions&);
+template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&,
+                                         const FixedMesh<2, 3>&, const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&,
                                          const FixedMesh<3>&, const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&, const Mesh<2>&,

@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "metric/charts.hpp"
 #include "metric/surroundings.hpp"
 
 namespace ductile::meshadapt {
@@ -36,12 +37,12 @@ struct Derivatives {
 
 // ---- Least squares ----
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class QuadraticFit {
  public:
-  QuadraticFit(const Executor& executor, const FixedMesh<Dim>& mesh,
+  QuadraticFit(const Executor& executor, const Charts<Dim, Space>& charts,
                std::span<const double> value_of)
-      : mesh_(mesh), value_of_(value_of), buffer_(executor) {}
+      : charts_(charts), mesh_(charts.mesh()), value_of_(value_of), buffer_(executor) {}
 
   /// The derivatives of the quadratic at a vertex. Thread safety: any thread of the executor.
   Derivatives<Dim> at(VertexId vertex) {
@@ -62,15 +63,15 @@ class QuadraticFit {
   using System = SmallSystem<unknowns>;
 
   std::optional<Derivatives<Dim>> fit(const Surroundings<Dim>& around, double regularise) const {
-    const Vector<Dim> centre = mesh_.position_of[around.centre()];
+    const VertexId centre = around.centre();
     Shape<Dim> shape;
-    for (const VertexId v : around.vertices()) shape.add(mesh_.position_of[v] - centre);
+    for (const VertexId v : around.vertices()) shape.add(charts_.offset(centre, v));
     shape.factorise();
     System system;
     for (const VertexId v : around.vertices()) {
-      const Vector<Dim> d = shape.seen(mesh_.position_of[v] - centre);
+      const Vector<Dim> d = shape.seen(charts_.offset(centre, v));
       const double weight = 1 / norm(d);
-      system.add(row(d, weight), {weight * (value_of_[v] - value_of_[around.centre()])});
+      system.add(row(d, weight), {weight * (value_of_[v] - value_of_[centre])});
     }
     if (regularise > 0) system.regularise(regularise);
     if (!system.solve(regularise > 0 ? 0 : least_pivot)) return std::nullopt;
@@ -108,7 +109,8 @@ class QuadraticFit {
     return result;
   }
 
-  const FixedMesh<Dim>& mesh_;
+  const Charts<Dim, Space>& charts_;
+  const FixedMesh<Dim, Space>& mesh_;
   std::span<const double> value_of_;
   runtime::PerThread<Surroundings<Dim>> buffer_;
 };
@@ -298,7 +300,8 @@ std::vector<Vector<Dim>> recover_gradient_at(const Executor& executor, const Fix
                                              std::span<const double> value_of,
                                              std::span<const VertexId> at) {
   expect_value_everywhere(mesh, value_of);
-  QuadraticFit<Dim> fit(executor, mesh, value_of);
+  const Charts<Dim> charts(executor, mesh);
+  QuadraticFit<Dim> fit(executor, charts, value_of);
   std::vector<Vector<Dim>> gradient_of(at.size());
   parallel_for(executor, at.size(),
                [&](std::size_t i) { gradient_of[i] = fit.at(at[i]).gradient; });
@@ -310,9 +313,15 @@ std::vector<Metric<Dim>> recover_hessian(const Executor& executor, const FixedMe
                                          std::span<const double> value_of, Recovery recovery) {
   expect_value_everywhere(mesh, value_of);
   if (recovery == Recovery::double_projection) return projected_hessian(executor, mesh, value_of);
-  QuadraticFit<Dim> fit(executor, mesh, value_of);
-  std::vector<Metric<Dim>> hessian_of(mesh.vertex_count());
-  parallel_for(executor, mesh.vertex_count(),
+  return fitted_hessian(executor, Charts<Dim>(executor, mesh), value_of);
+}
+
+template <int Dim, int Space>
+std::vector<Metric<Dim>> fitted_hessian(const Executor& executor, const Charts<Dim, Space>& charts,
+                                        std::span<const double> value_of) {
+  QuadraticFit<Dim, Space> fit(executor, charts, value_of);
+  std::vector<Metric<Dim>> hessian_of(value_of.size());
+  parallel_for(executor, value_of.size(),
                [&](std::size_t v) { hessian_of[v] = fit.at(static_cast<VertexId>(v)).hessian; });
   return hessian_of;
 }
@@ -338,5 +347,11 @@ template std::vector<Metric<2>> recover_hessian(const Executor&, const FixedMesh
                                                 std::span<const double>, Recovery);
 template std::vector<Metric<3>> recover_hessian(const Executor&, const FixedMesh<3>&,
                                                 std::span<const double>, Recovery);
+template std::vector<Metric<2>> fitted_hessian(const Executor&, const Charts<2>&,
+                                               std::span<const double>);
+template std::vector<Metric<2>> fitted_hessian(const Executor&, const Charts<2, 3>&,
+                                               std::span<const double>);
+template std::vector<Metric<3>> fitted_hessian(const Executor&, const Charts<3>&,
+                                               std::span<const double>);
 
 }  // namespace ductile::meshadapt

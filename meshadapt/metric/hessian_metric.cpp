@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/wording.hpp"
+#include "metric/charts.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -43,10 +44,10 @@ void expect_options(const HessianMetricOptions& options) {
 }
 
 /// Length of the diagonal of the box around the mesh.
-template <int Dim>
-double extent(const Executor& executor, const FixedMesh<Dim>& mesh) {
-  Vector<Dim> diagonal;
-  for (int axis = 0; axis < Dim; ++axis) {
+template <int Dim, int Space>
+double extent(const Executor& executor, const FixedMesh<Dim, Space>& mesh) {
+  Vector<Space> diagonal;
+  for (int axis = 0; axis < Space; ++axis) {
     const auto furthest = [&](double sign) {
       return parallel_reduce(
           executor, mesh.vertex_count(), -std::numeric_limits<double>::infinity(),
@@ -58,8 +59,8 @@ double extent(const Executor& executor, const FixedMesh<Dim>& mesh) {
 }
 
 /// The bounds that hold, those included that are not given.
-template <int Dim>
-SizeBounds bounds_in_force(const Executor& executor, const FixedMesh<Dim>& mesh,
+template <int Dim, int Space>
+SizeBounds bounds_in_force(const Executor& executor, const FixedMesh<Dim, Space>& mesh,
                            SizeBounds bounds) {
   if (bounds.anisotropy == 0) bounds.anisotropy = default_anisotropy;
   if (bounds.largest == 0) bounds.largest = std::max(extent(executor, mesh), bounds.smallest);
@@ -68,23 +69,22 @@ SizeBounds bounds_in_force(const Executor& executor, const FixedMesh<Dim>& mesh,
 
 /// The L^p norm of what has these values at the vertices, none below 0, over the largest of them so
 /// that no power of it leaves the range of numbers.
-template <int Dim>
-double norm_of(const Executor& executor, const FixedMesh<Dim>& mesh,
+double norm_of(const Executor& executor, const std::vector<double>& share_of,
                const std::vector<double>& value_of, double norm) {
   const double most = parallel_reduce(
       executor, value_of.size(), 0.0, [&](std::size_t v) { return value_of[v]; }, largest_of);
   if (most == 0 || std::isinf(norm)) return most;
   const double sum = parallel_reduce(
       executor, value_of.size(), 0.0,
-      [&](std::size_t v) { return mesh.share_of[v] * std::pow(value_of[v] / most, norm); },
+      [&](std::size_t v) { return share_of[v] * std::pow(value_of[v] / most, norm); },
       [](double a, double b) { return a + b; });
   return most * std::pow(sum, 1 / norm);
 }
 
-template <int Dim>
+template <int Dim, int Space>
 class HessianMetric {
  public:
-  HessianMetric(const Executor& executor, const FixedMesh<Dim>& mesh,
+  HessianMetric(const Executor& executor, const FixedMesh<Dim, Space>& mesh,
                 const HessianMetricOptions& options)
       : executor_(executor), mesh_(mesh), options_(options) {
     options_.bounds = bounds_in_force(executor, mesh, options_.bounds);
@@ -94,16 +94,17 @@ class HessianMetric {
     take_curvatures(hessian_of);
     normalise();
     const double wanted = options_.complexity;
-    const double plain = spectrum_.complexity(executor_, mesh_, 1);
+    const double plain = spectrum_.complexity(executor_, mesh_.share_of, 1);
     spectrum_.bounds = options_.bounds;
     double factor = 0;
     if (wanted > 0)
-      factor = fitting_factor([&](double f) { return spectrum_.complexity(executor_, mesh_, f); },
-                              wanted, std::pow(wanted / plain, 2.0 / Dim));
+      factor = fitting_factor(
+          [&](double f) { return spectrum_.complexity(executor_, mesh_.share_of, f); }, wanted,
+          std::pow(wanted / plain, 2.0 / Dim));
     else
       factor = fitting_factor([&](double f) { return 1 / error(f); }, 1 / options_.error, 1);
     FittedMetric<Dim> result{spectrum_.metrics(executor_, factor), {}};
-    result.fit.complexity = spectrum_.complexity(executor_, mesh_, factor);
+    result.fit.complexity = spectrum_.complexity(executor_, mesh_.share_of, factor);
     result.fit.elements = result.fit.complexity / complexity_of_elements(Dim, 1);
     result.fit.error = error(factor);
     result.fit.reached = wanted > 0 ? std::abs(result.fit.complexity / wanted - 1) < 1e-6
@@ -166,26 +167,26 @@ class HessianMetric {
     };
     std::vector<double> error_at(curvature_of_.size());
     parallel_for(executor_, error_at.size(), [&](std::size_t v) { error_at[v] = at(v); });
-    return norm_of(executor_, mesh_, error_at, options_.norm);
+    return norm_of(executor_, mesh_.share_of, error_at, options_.norm);
   }
 
   const Executor& executor_;
-  const FixedMesh<Dim>& mesh_;
+  const FixedMesh<Dim, Space>& mesh_;
   HessianMetricOptions options_;
   std::vector<std::array<double, Dim>> curvature_of_;  // [vertex], |eigenvalues| of the Hessian
   Spectrum<Dim> spectrum_;
 };
 
 /// The metric for a goal of elements has the complexity of so many on an average mesh.
-template <int Dim>
-FittedMetric<Dim> fit(const Executor& executor, const FixedMesh<Dim>& mesh,
+template <int Dim, int Space>
+FittedMetric<Dim> fit(const Executor& executor, const FixedMesh<Dim, Space>& mesh,
                       const std::vector<Metric<Dim>>& hessian_of, HessianMetricOptions options) {
   expect_options(options);
   if (options.elements > 0) {
     options.complexity = complexity_of_elements(Dim, options.elements);
     options.elements = 0;
   }
-  return HessianMetric<Dim>(executor, mesh, options).fit(hessian_of);
+  return HessianMetric<Dim, Space>(executor, mesh, options).fit(hessian_of);
 }
 
 /// True if second derivatives are only the rounding of the values they come from: those of a
@@ -194,11 +195,11 @@ FittedMetric<Dim> fit(const Executor& executor, const FixedMesh<Dim>& mesh,
 /// largest, more where they are sums, and fits to them amplify that, most where surroundings are
 /// one-sided. Shorter edges near by make the noise of longer ones, as rounding over the square of
 /// an edge does.
-template <int Dim>
+template <int Dim, int Space>
 class Roundoff {
  public:
-  Roundoff(const FixedMesh<Dim>& mesh, const std::vector<double>& value_of)
-      : mesh_(mesh), value_of_(value_of) {}
+  Roundoff(const Charts<Dim, Space>& charts, const std::vector<double>& value_of)
+      : charts_(charts), mesh_(charts.mesh()), value_of_(value_of) {}
 
   bool explains(const Executor& executor, const std::vector<Metric<Dim>>& hessian_of) const {
     constexpr double amplified = 100 * std::numeric_limits<double>::epsilon();
@@ -219,7 +220,7 @@ class Roundoff {
   void each_edge(std::size_t v, Visit&& visit) const {
     for (const ElementId e : mesh_.elements_of(static_cast<VertexId>(v)))
       for (const VertexId other : mesh_.corners_of[e])
-        if (other != v) visit(other, mesh_.position_of[other] - mesh_.position_of[v]);
+        if (other != v) visit(other, charts_.offset(static_cast<VertexId>(v), other));
   }
 
   double shortest(std::size_t v) const {
@@ -239,7 +240,8 @@ class Roundoff {
     return most > 0 ? most * (nearby / shortest_at[v]) : 0;
   }
 
-  const FixedMesh<Dim>& mesh_;
+  const Charts<Dim, Space>& charts_;
+  const FixedMesh<Dim, Space>& mesh_;
   const std::vector<double>& value_of_;
 };
 
@@ -256,55 +258,73 @@ double local_error(const Metric<Dim>& metric, const Metric<Dim>& hessian) {
 
 /// HessianMetric::error() for any metrics.
 template <int Dim>
-double error_of(const Executor& executor, const FixedMesh<Dim>& mesh,
+double error_of(const Executor& executor, const std::vector<double>& share_of,
                 const std::vector<Metric<Dim>>& metric_of,
                 const std::vector<Metric<Dim>>& hessian_of, double norm) {
   std::vector<double> error_at(metric_of.size());
   parallel_for(executor, error_at.size(), [&](std::size_t v) {
-    error_at[v] = mesh.share_of[v] > 0 ? local_error(metric_of[v], hessian_of[v]) : 0;
+    error_at[v] = share_of[v] > 0 ? local_error(metric_of[v], hessian_of[v]) : 0;
   });
-  return norm_of(executor, mesh, error_at, norm);
+  return norm_of(executor, share_of, error_at, norm);
 }
 
-template <int Dim>
+template <int Dim, int Space>
+std::vector<Metric<Dim>> hessian_in(const Executor& executor, const Charts<Dim, Space>& charts,
+                                    const std::vector<double>& value_of, Recovery recovery) {
+  if constexpr (Dim == Space)
+    return recover_hessian<Dim>(executor, charts.mesh(), value_of, recovery);
+  if (recovery == Recovery::double_projection)
+    throw InputError(
+        "metric of a solution on a surface: expected derivatives by least squares, found double "
+        "projection");
+  return fitted_hessian(executor, charts, value_of);
+}
+
+template <int Dim, int Space = Dim>
 SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
                                   const AnyField& field, const SolutionMetricOptions& options) {
   expect_gradation(options.gradation);
   expect_finite(executor, field);  // a Hessian spreads it, so another vertex would be named
-  const auto mesh = make_fixed_mesh<Dim>(executor, any);
+  const auto mesh = make_fixed_mesh<Dim, Space>(executor, any);
+  const Charts<Dim, Space> charts(executor, mesh);
+  const auto& nodes = charts.mesh();
   const std::size_t stride = stride_of(field);
-  FittedMetric<Dim> all;
+  FittedMetric<Dim> all;  // at the nodes
   all.fit.reached = true;
-  std::vector<std::vector<Metric<Dim>>> hessians;  // [component][vertex]
-  std::vector<double> value_of(field.vertex_count);
+  std::vector<std::vector<Metric<Dim>>> hessians;  // [component][node]
+  std::vector<double> value_of(nodes.vertex_count());
   for (std::size_t component = 0; component < stride; ++component) {
-    parallel_for(executor, value_of.size(),
-                 [&](std::size_t v) { value_of[v] = field.values[v * stride + component]; });
-    hessians.push_back(recover_hessian<Dim>(executor, mesh, value_of, options.recovery));
-    if (Roundoff<Dim>(mesh, value_of).explains(executor, hessians.back()))
-      hessians.back().assign(mesh.vertex_count(), Metric<Dim>{});
-    FittedMetric<Dim> one = fit<Dim>(executor, mesh, hessians.back(), options.goal);
+    parallel_for(executor, value_of.size(), [&](std::size_t n) {
+      value_of[n] = field.values[charts.vertex(static_cast<VertexId>(n)) * stride + component];
+    });
+    hessians.push_back(hessian_in(executor, charts, value_of, options.recovery));
+    if (Roundoff<Dim, Space>(charts, value_of).explains(executor, hessians.back()))
+      hessians.back().assign(nodes.vertex_count(), Metric<Dim>{});
+    FittedMetric<Dim> one = fit(executor, nodes, hessians.back(), options.goal);
     all.fit.reached = all.fit.reached && one.fit.reached;
     if (component == 0)
       all.metric_of = std::move(one.metric_of);
     else
       intersect(executor, all.metric_of, one.metric_of);
   }
-  const bool changed = stride > 1 || options.gradation > 0;
+  MetricFit found = all.fit;
+  std::vector<Metric<Space>> metric_of = charts.lifted(executor, std::move(all.metric_of));
+  const bool changed = stride > 1 || options.gradation > 0 || Dim < Space;
   if (options.goal.elements > 0 || (options.goal.complexity > 0 && changed))
-    all.fit = scale_to_complexity<Dim>(
-        executor, all.metric_of, mesh,
+    found = scale_to_complexity(
+        executor, metric_of, mesh,
         {options.goal.complexity, bounds_in_force(executor, mesh, options.goal.bounds),
          options.gradation, options.goal.elements});
   else if (options.gradation > 0)
-    limit_gradation(executor, all.metric_of, mesh, {.factor = options.gradation});
+    limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
+  const auto& at_nodes = charts.restricted(executor, metric_of);
   for (const auto& hessian_of : hessians)
-    all.fit.error = std::max(
-        all.fit.error, error_of(executor, mesh, all.metric_of, hessian_of, options.goal.norm));
-  all.fit.complexity = complexity<Dim>(executor, mesh, all.metric_of);
+    found.error = std::max(
+        found.error, error_of(executor, nodes.share_of, at_nodes, hessian_of, options.goal.norm));
+  found.complexity = complexity(executor, mesh, metric_of);
   if (!(options.goal.elements > 0))
-    all.fit.elements = all.fit.complexity / complexity_of_elements(Dim, 1);
-  return {symmetric_field(executor, all.metric_of, field.name), all.fit};
+    found.elements = found.complexity / complexity_of_elements(Dim, 1);
+  return {symmetric_field(executor, metric_of, field.name), found};
 }
 
 }  // namespace
@@ -318,7 +338,8 @@ FittedMetric<Dim> hessian_metric(const Executor& executor, const FixedMesh<Dim>&
     fitted.fit = scale_to_complexity<Dim>(
         executor, fitted.metric_of, mesh,
         {.bounds = bounds_in_force(executor, mesh, options.bounds), .elements = options.elements});
-    fitted.fit.error = error_of(executor, mesh, fitted.metric_of, hessian_of, options.norm);
+    fitted.fit.error =
+        error_of(executor, mesh.share_of, fitted.metric_of, hessian_of, options.norm);
   }
   return fitted;
 }
@@ -326,6 +347,7 @@ FittedMetric<Dim> hessian_metric(const Executor& executor, const FixedMesh<Dim>&
 SolutionMetric solution_metric(const Executor& executor, const AnyMesh& mesh, const AnyField& field,
                                const SolutionMetricOptions& options) {
   expect_field_of(field, mesh);
+  if (is_surface(mesh)) return solution_metric_in<2, 3>(executor, mesh, field, options);
   return mesh.dimension == 2 ? solution_metric_in<2>(executor, mesh, field, options)
                              : solution_metric_in<3>(executor, mesh, field, options);
 }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <vector>
 
-#include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -47,14 +46,15 @@ struct Spectrum {
     return bounded(value, bounds);
   }
 
-  double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
+  /// `share_of` is that of a FixedMesh.
+  double complexity(const runtime::Executor& executor, const std::vector<double>& share_of,
                     double factor) const {
     return runtime::parallel_reduce(
         executor, axes_of.size(), 0.0,
         [&](std::size_t v) {
           double determinant = 1;
           for (const double value : scaled(v, factor)) determinant *= value;
-          return mesh.share_of[v] * std::sqrt(determinant);
+          return share_of[v] * std::sqrt(determinant);
         },
         [](double a, double b) { return a + b; });
   }

@@ -72,14 +72,14 @@ template <int Dim>
 class Surroundings {
  public:
   /// Starts with the vertices of the elements around `centre`, without itself.
-  void start(const FixedMesh<Dim>& mesh, VertexId centre) {
+  void start(const auto& mesh, VertexId centre) {
     centre_ = centre;
     vertices_.assign(1, centre);
     grow(mesh);
   }
 
   /// Adds those of one layer of elements more. False if there are none.
-  bool grow(const FixedMesh<Dim>& mesh) {
+  bool grow(const auto& mesh) {
     next_ = vertices_;
     next_.push_back(centre_);
     for (const VertexId v : vertices_)

@@ -21,8 +21,8 @@ template <int Dim, int Space>
 auto elements_around(const Mesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.elements_of.of(vertex);
 }
-template <int Dim>
-auto elements_around(const FixedMesh<Dim>& mesh, VertexId vertex) {
+template <int Dim, int Space>
+auto elements_around(const FixedMesh<Dim, Space>& mesh, VertexId vertex) {
   return mesh.elements_of(vertex);
 }
 

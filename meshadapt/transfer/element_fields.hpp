@@ -13,12 +13,12 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 class ElementFields {
  public:
   /// Refers to all arguments. `field` has values [old element * stride + component].
-  ElementFields(const runtime::Executor& executor, const Locator<Dim>& from,
-                const Components& field, const FixedMesh<Dim>& to)
+  ElementFields(const runtime::Executor& executor, const Locator<Dim, Space>& from,
+                const Components& field, const FixedMesh<Dim, Space>& to)
       : executor_(executor), from_(from), field_(field), to_(to) {}
 
   /// Values at the centroids of the new elements: [new element * stride + component].
@@ -51,7 +51,8 @@ class ElementFields {
 
   void each_element(auto&& visit) const {
     walk_in_blocks(executor_, to_.element_count(), [&](std::size_t e, ElementId near) {
-      const Place<Dim> centre = from_.find(centroid_of(to_, static_cast<ElementId>(e)), near);
+      const Place<Dim> centre =
+          from_.find(centroid_of(to_, static_cast<ElementId>(e)), Dim < Space ? none : near);
       visit(e, centre);
       return centre.element;
     });
@@ -87,9 +88,9 @@ class ElementFields {
   }
 
   const runtime::Executor& executor_;
-  const Locator<Dim>& from_;
+  const Locator<Dim, Space>& from_;
   Components field_;
-  const FixedMesh<Dim>& to_;
+  const FixedMesh<Dim, Space>& to_;
 };
 
 }  // namespace ductile::meshadapt

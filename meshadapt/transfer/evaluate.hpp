@@ -19,8 +19,8 @@ struct Components {
 };
 
 /// Sets result[component] to the field's value at a place, clamped to the values at the corners.
-template <int Dim>
-void evaluate(const FixedMesh<Dim>& mesh, const Components& field, const Place<Dim>& place,
+template <int Dim, int Space>
+void evaluate(const FixedMesh<Dim, Space>& mesh, const Components& field, const Place<Dim>& place,
               double* result) {
   std::array<const double*, Dim + 1> corner;
   for (std::size_t i = 0; i <= Dim; ++i)
@@ -42,8 +42,8 @@ struct Evaluated {
 };
 
 /// Evaluates at so many points; find(i, near) gives the place of each.
-template <int Dim>
-Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim>& locator,
+template <int Dim, int Space>
+Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim, Space>& locator,
                         const Components& field, std::size_t point_count, auto&& find) {
   Evaluated result{std::vector<double>(point_count * field.stride)};
   std::vector<std::uint8_t> outside(point_count);
@@ -59,15 +59,15 @@ Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim>& l
   return result;
 }
 
-/// Evaluates at coordinates[point * Dim + axis]; outside, at the closest point of the mesh.
-template <int Dim>
-Evaluated evaluate_at(const runtime::Executor& executor, const Locator<Dim>& locator,
+/// Evaluates at coordinates[point * Space + axis]; outside, at the closest point of the mesh.
+template <int Dim, int Space>
+Evaluated evaluate_at(const runtime::Executor& executor, const Locator<Dim, Space>& locator,
                       const Components& field, std::span<const double> coordinates) {
-  return evaluate_each(executor, locator, field, coordinates.size() / Dim,
+  return evaluate_each(executor, locator, field, coordinates.size() / Space,
                        [&](std::size_t i, ElementId near) {
-                         Vector<Dim> point;
-                         std::copy_n(&coordinates[i * Dim], Dim, point.x.begin());
-                         return locator.find(point, near);
+                         Vector<Space> point;
+                         std::copy_n(&coordinates[i * Space], Space, point.x.begin());
+                         return locator.find(point, Dim < Space ? none : near);
                        });
 }
 

@@ -32,14 +32,14 @@ struct ListedFacet {
   friend auto operator<=>(const ListedFacet&, const ListedFacet&) = default;
 };
 
-template <int Dim>
+template <int Dim, int Space>
 class OriginFinder {
  public:
   OriginFinder(const Executor& executor, const AnyMesh& before, const AnyMesh& after)
       : executor_(executor),
         before_(before),
         after_(after),
-        old_mesh_(make_fixed_mesh<Dim>(executor, before)),
+        old_mesh_(make_fixed_mesh<Dim, Space>(executor, before)),
         locator_(executor, old_mesh_),
         places_(executor, locator_, after) {}
 
@@ -112,17 +112,17 @@ class OriginFinder {
   const Executor& executor_;
   const AnyMesh& before_;
   const AnyMesh& after_;
-  const FixedMesh<Dim> old_mesh_;
-  const Locator<Dim> locator_;
-  VertexPlaces<Dim> places_;
+  const FixedMesh<Dim, Space> old_mesh_;
+  const Locator<Dim, Space> locator_;
+  VertexPlaces<Dim, Space> places_;
   Origins found_;
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 Origins origins_in(const Executor& executor, const AnyMesh& before, const AnyMesh& after) {
-  expect_places(executor, before.coordinates, Dim, "old vertex");
-  expect_places(executor, after.coordinates, Dim, "new vertex");
-  return OriginFinder<Dim>(executor, before, after).find();
+  expect_places(executor, before.coordinates, Space, "old vertex");
+  expect_places(executor, after.coordinates, Space, "new vertex");
+  return OriginFinder<Dim, Space>(executor, before, after).find();
 }
 
 }  // namespace
@@ -136,6 +136,7 @@ Origins origins(const Executor& executor, const AnyMesh& before, const AnyMesh& 
   if (before.dimension != after.dimension)
     throw InputError(name_of(after) + ": expected dimension " + std::to_string(before.dimension) +
                      ", that of " + name_of(before) + ", found " + std::to_string(after.dimension));
+  if (is_surface(before)) return origins_in<2, 3>(executor, before, after);
   return before.dimension == 2 ? origins_in<2>(executor, before, after)
                                : origins_in<3>(executor, before, after);
 }

@@ -1,5 +1,6 @@
 /// @file
-/// Checks that points can be located: coordinates are small enough for squared distances.
+/// Checks before a transfer: coordinates are small enough for squared distances, and integrals are
+/// not to be kept on a surface alone.
 #pragma once
 
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "core/first_bad.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -22,6 +24,13 @@ inline void expect_places(const runtime::Executor& executor, std::span<const dou
   refuse("expected coordinates from -1e150 to 1e150, found others at " +
          Wording("coordinates[" + std::to_string(bad) + "], " + what + " " + std::to_string(point),
                  entity(what, point)));
+}
+
+[[noreturn]] inline void refuse_projection() {
+  throw InputError(
+      "expected fields on a surface to be carried by their values (--interpolate, "
+      "Carrying::by_value), because two surfaces do not overlap exactly; found conservative "
+      "transfer");
 }
 
 }  // namespace ductile::meshadapt

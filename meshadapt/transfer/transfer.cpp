@@ -8,7 +8,6 @@
 #include "mesh/finite_values.hpp"
 #include "transfer/conservative_transfer.hpp"
 #include "transfer/places.hpp"
-#include "transfer/surface_places.hpp"
 #include "transfer/vertex_places.hpp"
 
 namespace ductile::meshadapt {
@@ -25,21 +24,24 @@ void expect_points(const Executor& executor, std::span<const double> coordinates
   expect_places(executor, coordinates, dimension, "point");
 }
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 TransferredField transfer(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
                           const ProjectionOptions* projection) {
-  expect_places(executor, from.mesh.coordinates, Dim, "old vertex");
-  expect_places(executor, to.coordinates, Dim, "new vertex");
-  const auto old_mesh = make_fixed_mesh<Dim>(executor, from.mesh);
-  const auto new_mesh = make_fixed_mesh<Dim>(executor, to);
-  const Locator<Dim> locator(executor, old_mesh);
+  expect_places(executor, from.mesh.coordinates, Space, "old vertex");
+  expect_places(executor, to.coordinates, Space, "new vertex");
+  const auto old_mesh = make_fixed_mesh<Dim, Space>(executor, from.mesh);
+  const auto new_mesh = make_fixed_mesh<Dim, Space>(executor, to);
+  const Locator<Dim, Space> locator(executor, old_mesh);
   const Components field{from.field.values, stride_of(from.field)};
   TransferredField result;
-  result.field = {Dim, to.vertex_count(), from.field.types, {}, from.field.name};
+  result.field = {Space, to.vertex_count(), from.field.types, {}, from.field.name};
   auto at_vertices = evaluate_at_vertices(executor, locator, field, to);
   result.field.values = std::move(at_vertices.values);
   result.report.vertices_outside = at_vertices.outside;
-  if (projection) {
+  if (!projection) return result;
+  if constexpr (Dim < Space) {
+    refuse_projection();
+  } else {
     const JoinParts whole;
     ConservativeTransfer<Dim> onto(executor, locator, field, new_mesh, whole);
     result.field.values = onto.run(*projection);
@@ -49,46 +51,26 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
   return result;
 }
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 TransferredField sample(const Executor& executor, const FieldOnMesh& from,
                         std::span<const double> coordinates) {
-  expect_places(executor, from.mesh.coordinates, Dim, "vertex");
-  const auto mesh = make_fixed_mesh<Dim>(executor, from.mesh);
-  expect_points(executor, coordinates, Dim);
-  const Locator<Dim> locator(executor, mesh);
+  expect_places(executor, from.mesh.coordinates, Space, "vertex");
+  const auto mesh = make_fixed_mesh<Dim, Space>(executor, from.mesh);
+  expect_points(executor, coordinates, Space);
+  const Locator<Dim, Space> locator(executor, mesh);
   const Components field{from.field.values, stride_of(from.field)};
   TransferredField result;
-  result.field = {Dim, coordinates.size() / Dim, from.field.types, {}, from.field.name};
+  result.field = {Space, coordinates.size() / Space, from.field.types, {}, from.field.name};
   auto at_points = evaluate_at(executor, locator, field, coordinates);
   result.field.values = std::move(at_points.values);
   result.report.vertices_outside = at_points.outside;
   return result;
 }
 
-TransferredField sample_surface(const Executor& executor, const FieldOnMesh& from,
-                                std::span<const double> coordinates) {
-  expect_places(executor, from.mesh.coordinates, 3, "vertex");
-  expect_points(executor, coordinates, 3);
-  const std::size_t count = coordinates.size() / 3;
-  const SurfacePlaces places(executor, from.mesh);
-  return {
-      {3, count, from.field.types,
-       places.interpolated(
-           {from.field.values, stride_of(from.field)}, count,
-           [&](std::size_t i) {
-             return Vector<3>{{coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}};
-           }),
-       from.field.name},
-      {}};
-}
-
 TransferredField transfer_any(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
                               const ProjectionOptions* projection) {
   expect_field_of(from.field, from.mesh);
-  if (is_surface(from.mesh)) {
-    if (projection) refuse_projection();
-    return sample_surface(executor, from, to.coordinates);
-  }
+  if (is_surface(from.mesh)) return transfer<2, 3>(executor, from, to, projection);
   return from.mesh.dimension == 2 ? transfer<2>(executor, from, to, projection)
                                   : transfer<3>(executor, from, to, projection);
 }
@@ -103,7 +85,7 @@ TransferredField interpolate_field(const Executor& executor, const FieldOnMesh& 
 TransferredField interpolate_at(const Executor& executor, const FieldOnMesh& from,
                                 std::span<const double> coordinates) {
   expect_field_of(from.field, from.mesh);
-  if (is_surface(from.mesh)) return sample_surface(executor, from, coordinates);
+  if (is_surface(from.mesh)) return sample<2, 3>(executor, from, coordinates);
   return from.mesh.dimension == 2 ? sample<2>(executor, from, coordinates)
                                   : sample<3>(executor, from, coordinates);
 }

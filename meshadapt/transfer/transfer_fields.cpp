@@ -16,7 +16,6 @@
 #include "transfer/conservative_transfer.hpp"
 #include "transfer/element_fields.hpp"
 #include "transfer/places.hpp"
-#include "transfer/surface_places.hpp"
 #include "transfer/vertex_places.hpp"
 
 namespace ductile::meshadapt {
@@ -67,7 +66,7 @@ void expect_field(const Executor& executor, const NamedFieldsOnMesh& from, std::
                    (at_vertices ? "vertex " : "element ") + std::to_string(bad / each + 1)));
 }
 
-template <int Dim>
+template <int Dim, int Space>
 class FieldCarrier {
  public:
   FieldCarrier(const Executor& executor, const NamedFieldsOnMesh& from, const AnyMesh& to,
@@ -75,8 +74,8 @@ class FieldCarrier {
       : executor_(executor),
         fields_(from.fields),
         join_(join),
-        old_mesh_(make_fixed_mesh<Dim>(executor, from.mesh)),
-        new_mesh_(make_fixed_mesh<Dim>(executor, to)),
+        old_mesh_(make_fixed_mesh<Dim, Space>(executor, from.mesh)),
+        new_mesh_(make_fixed_mesh<Dim, Space>(executor, to)),
         to_(to),
         locator_(executor, old_mesh_) {
     if (join_) join_(new_mesh_.share_of, 1, Joining::sum);
@@ -87,7 +86,7 @@ class FieldCarrier {
   void carry(const std::vector<std::size_t>& which, Where place, Carrying carrying) {
     if (which.empty()) return;
     std::size_t stride = 0;
-    for (const std::size_t f : which) stride += components(fields_[f], Dim);
+    for (const std::size_t f : which) stride += components(fields_[f], Space);
     const std::vector<double> values = side_by_side(which, stride);
     split(which, stride, carried({values, stride}, place, carrying));
     if (place == Where::elements && carrying == Carrying::by_value)
@@ -102,9 +101,9 @@ class FieldCarrier {
     Coverage coverage;
     std::vector<double> values;
     if (place == Where::elements) {
-      const ElementFields<Dim> fields(executor_, locator_, field, new_mesh_);
+      const ElementFields<Dim, Space> fields(executor_, locator_, field, new_mesh_);
       if (carrying == Carrying::by_value) return fields.at_centroids();
-      values = fields.means(coverage);
+      if constexpr (Dim == Space) values = fields.means(coverage);
     } else {
       Evaluated at_vertices = evaluate_at_vertices(executor_, locator_, field, to_);
       report.vertices_outside = at_vertices.outside;
@@ -112,9 +111,11 @@ class FieldCarrier {
         if (join_) join_(at_vertices.values, field.stride, Joining::first);
         return std::move(at_vertices.values);
       }
-      ConservativeTransfer<Dim> onto(executor_, locator_, field, new_mesh_, join_);
-      values = onto.run({});
-      coverage = onto.coverage();
+      if constexpr (Dim == Space) {
+        ConservativeTransfer<Dim> onto(executor_, locator_, field, new_mesh_, join_);
+        values = onto.run({});
+        coverage = onto.coverage();
+      }
     }
     report.volume_outside = coverage.volume_outside;
     report.volume_left_out = coverage.volume_left_out;
@@ -124,11 +125,12 @@ class FieldCarrier {
   /// Interleaves all components of each entity.
   std::vector<double> side_by_side(const std::vector<std::size_t>& which,
                                    std::size_t stride) const {
-    const std::size_t count = fields_[which[0]].values.size() / components(fields_[which[0]], Dim);
+    const std::size_t count =
+        fields_[which[0]].values.size() / components(fields_[which[0]], Space);
     std::vector<double> values(count * stride);
     std::size_t first = 0;
     for (const std::size_t f : which) {
-      const std::size_t each = components(fields_[f], Dim);
+      const std::size_t each = components(fields_[f], Space);
       runtime::parallel_for(executor_, count, [&](std::size_t i) {
         std::copy_n(&fields_[f].values[i * each], each, &values[i * stride + first]);
       });
@@ -142,7 +144,7 @@ class FieldCarrier {
     const std::size_t count = values.size() / stride;
     std::size_t first = 0;
     for (const std::size_t f : which) {
-      const std::size_t each = components(fields_[f], Dim);
+      const std::size_t each = components(fields_[f], Space);
       NamedField& field = result_.fields[f];
       field = {.name = fields_[f].name,
                .type = fields_[f].type,
@@ -158,20 +160,21 @@ class FieldCarrier {
   const Executor& executor_;
   std::span<const NamedField> fields_;
   const JoinParts& join_;
-  const FixedMesh<Dim> old_mesh_;
-  FixedMesh<Dim> new_mesh_;
+  const FixedMesh<Dim, Space> old_mesh_;
+  FixedMesh<Dim, Space> new_mesh_;
   const AnyMesh& to_;
-  const Locator<Dim> locator_;
+  const Locator<Dim, Space> locator_;
   TransferredFields result_;
 };
 
-template <int Dim>
+template <int Dim, int Space = Dim>
 TransferredFields transfer_in(const Executor& executor, const NamedFieldsOnMesh& from,
                               const AnyMesh& to, const std::vector<Carrying>& how_of,
                               const JoinParts& join) {
-  expect_places(executor, from.mesh.coordinates, Dim, "old vertex");
-  expect_places(executor, to.coordinates, Dim, "new vertex");
-  FieldCarrier<Dim> carrier(executor, from, to, join);
+  if (Dim < Space && std::ranges::count(how_of, Carrying::conservatively) > 0) refuse_projection();
+  expect_places(executor, from.mesh.coordinates, Space, "old vertex");
+  expect_places(executor, to.coordinates, Space, "new vertex");
+  FieldCarrier<Dim, Space> carrier(executor, from, to, join);
   for (const Where place : {Where::vertices, Where::elements})
     for (const Carrying carrying : {Carrying::by_value, Carrying::conservatively}) {
       std::vector<std::size_t> which;
@@ -180,29 +183,6 @@ TransferredFields transfer_in(const Executor& executor, const NamedFieldsOnMesh&
       carrier.carry(which, place, carrying);
     }
   return carrier.take_result();
-}
-
-TransferredFields transfer_on_surface(const Executor& executor, const NamedFieldsOnMesh& from,
-                                      const AnyMesh& to, const std::vector<Carrying>& how_of) {
-  expect_places(executor, from.mesh.coordinates, 3, "old vertex");
-  expect_places(executor, to.coordinates, 3, "new vertex");
-  expect_corners<2>(executor, to);
-  const SurfacePlaces places(executor, from.mesh);
-  TransferredFields result;
-  for (std::size_t f = 0; f < from.fields.size(); ++f) {
-    if (how_of[f] == Carrying::conservatively) refuse_projection();
-    NamedField field = from.fields[f];
-    const Components values{from.fields[f].values, components(field, 3)};
-    const auto at = [&](std::size_t i) {
-      return field.place == Where::vertices ? position_in<3>(to, i) : centre_of(to, i);
-    };
-    const std::size_t count = entity_count(to, field.place);
-    field.values = field.place == Where::vertices ? places.interpolated(values, count, at)
-                                                  : places.of_elements(values, count, at);
-    if (field.place == Where::vertices) field.whole = false;
-    result.fields.push_back(std::move(field));
-  }
-  return result;
 }
 
 }  // namespace
@@ -219,7 +199,7 @@ TransferredFields transfer_fields(const Executor& executor, const NamedFieldsOnM
                      std::to_string(from.fields.size()) + " fields, found " +
                      std::to_string(carrying.size()));
   for (std::size_t f = 0; f < from.fields.size(); ++f) expect_field(executor, from, f, how_of[f]);
-  if (is_surface(from.mesh)) return transfer_on_surface(executor, from, to, how_of);
+  if (is_surface(from.mesh)) return transfer_in<2, 3>(executor, from, to, how_of, join);
   return from.mesh.dimension == 2 ? transfer_in<2>(executor, from, to, how_of, join)
                                   : transfer_in<3>(executor, from, to, how_of, join);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "exact.hpp"
 #include "facets.hpp"
@@ -329,8 +330,9 @@ void jitter(Random& random, Mesh& mesh, const Jitter& how) {
 
 bool all_positive(const Mesh& mesh) {
   const auto& elements = mesh.elements().corners;
-  return std::all_of(elements.begin(), elements.end(),
-                     [&](const Cell& element) { return orientation(mesh, element) > 0; });
+  return std::all_of(elements.begin(), elements.end(), [&](const Cell& element) {
+    return mesh.surface ? measure(mesh, element) > 0 : orientation(mesh, element) > 0;
+  });
 }
 
 bool map(Mesh& mesh, const std::function<Point(const Point&)>& to) {
@@ -355,7 +357,7 @@ void list_facets(Mesh& mesh, bool interfaces,
                          region(facet.elements[0]) != region(facet.elements[1]);
     if (!facet.on_boundary() && !between) continue;
     const Point along = corner(mesh, facet.corners, 1) - corner(mesh, facet.corners, 0);
-    const Point other = mesh.dimension == 2
+    const Point other = mesh.element_dimension() == 2
                             ? Point{0, 0, 1}
                             : corner(mesh, facet.corners, 2) - corner(mesh, facet.corners, 0);
     Point normal = cross(along, other);
@@ -363,6 +365,16 @@ void list_facets(Mesh& mesh, bool interfaces,
     listed.add(facet.corners, reference(centre(mesh, facet.corners), normal));
   }
   mesh.facets() = std::move(listed);
+}
+
+void make_surface(Mesh& mesh, const std::function<bool()>& keep) {
+  const Cells facets = std::exchange(mesh.facets(), {});
+  mesh.elements() = {};
+  mesh.surface = true;
+  mesh.elements() = facets;
+  std::vector<char> kept;
+  for (std::size_t i = 0; i < facets.size(); ++i) kept.push_back(keep() ? 1 : 0);
+  filter(mesh, kept);
 }
 
 }  // namespace ductile::campaign

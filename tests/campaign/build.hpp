@@ -63,4 +63,7 @@ bool all_positive(const Mesh& mesh);
 void list_facets(Mesh& mesh, bool interfaces,
                  const std::function<int(const Point&, const Point&)>& reference);
 
+/// Leaves of a body in 3D the listed facets for which keep() says so: a surface alone.
+void make_surface(Mesh& mesh, const std::function<bool()>& keep);
+
 }  // namespace ductile::campaign

@@ -21,7 +21,7 @@ struct Kind {
   double tolerant = 0.3;  ///< share of cases with -hausd, if the body is curved
 };
 
-const std::array<Kind, 17> kinds = {{{"random", random_body},
+const std::array<Kind, 18> kinds = {{{"random", random_body},
                                      {"voids", plate_with_voids, Asks::anything, 0.85},
                                      {"crack", crack, Asks::anything, 0.8},
                                      {"round", round_body, Asks::anything, 0.7},
@@ -37,7 +37,8 @@ const std::array<Kind, 17> kinds = {{{"random", random_body},
                                      {"strong", random_body, Asks::strong, 0.1},
                                      {"unlimited", random_body, Asks::unlimited, 0.1},
                                      {"bounds", random_body, Asks::bounds, 0.1},
-                                     {"stretched", layered_box, Asks::nothing}}};
+                                     {"stretched", layered_box, Asks::nothing},
+                                     {"surface", bare_surface, Asks::anything, 0.6}}};
 
 std::string number(double value) {
   std::array<char, 40> text;
@@ -107,7 +108,7 @@ class CaseMaker {
     }
     if (!is("few-digits") && !is("strong") && random_.chance(is("required") ? 1 : 0.2))
       require_some(random_, mesh());
-    if (!is("few-digits") && random_.chance(0.06)) {
+    if (!is("few-digits") && !mesh().surface && random_.chance(0.06)) {
       unlist_some(random_, mesh());
       case_.promise.unlisted_boundary = true;
     }
@@ -193,7 +194,7 @@ class CaseMaker {
   void choose_tolerance(bool curved) {
     if (is("short-required") || !random_.chance(curved ? kind_.tolerant : 0.15)) return;
     double tolerance = length_ * scale_ * random_.power(-1, 1);
-    if (is("random") || is("far-away") || is("round"))
+    if (is("random") || is("far-away") || is("round") || mesh().surface)
       tolerance = box_of(mesh().points).extent() * random_.power(-4, -1);
     option("-hausd", number(tolerance));
     case_.promise.tolerance = std::stod(case_.options.back());
@@ -208,7 +209,7 @@ class CaseMaker {
       for (const char* word :
            {"-nosurf", "-noswap", "-nomove", "-noinsert", "--thorough", "--by-colours"})
         if (random_.chance(0.06)) option(word);
-    if (has("-nosurf")) case_.promise.tolerance = 0;
+    if (has("-nosurf") && !mesh().surface) case_.promise.tolerance = 0;  // else of rims only
     if (random_.chance(0.04)) {
       option("--racing");
       case_.deterministic = false;

@@ -106,11 +106,14 @@ bool crosses(const Mesh& mesh, const Point& p, const Point& q, const Cell& trian
                    distance_to_segment(hit, b, c), distance_to_segment(hit, c, a)}) > depth_allowed;
 }
 
-/// Number of edges of elements that cross facets of the boundary.
+/// Number of edges of elements that cross facets of the boundary, or triangles of a surface.
 std::size_t count_crossings(const Mesh& mesh) {
   std::vector<Boxed> facets, edges;
   for (const Facet& facet : facets_of(mesh))
-    if (facet.on_boundary()) facets.push_back({facet.corners, box_of(mesh, facet.corners)});
+    if (facet.on_boundary() && !mesh.surface)
+      facets.push_back({facet.corners, box_of(mesh, facet.corners)});
+  for (const Cell& element : mesh.elements().corners)
+    if (mesh.surface) facets.push_back({element, box_of(mesh, element)});
   for (const auto& [a, b] : edges_of(mesh.elements().corners, mesh.corner_count())) {
     const Cell edge = {a, b, -1, -1};
     edges.push_back({edge, box_of(mesh, edge)});
@@ -132,7 +135,7 @@ std::size_t count_crossings(const Mesh& mesh) {
 Faults check_overlaps(const Mesh& mesh) {
   Faults faults;
   const Mesh unit = normalised(mesh, box_of(mesh.points));
-  if (const std::size_t count = count_overlaps(unit); count > 0)
+  if (const std::size_t count = unit.surface ? 0 : count_overlaps(unit); count > 0)
     faults.push_back("overlap: " + std::to_string(count) + " elements lie in others");
   if (const std::size_t count = count_crossings(unit); count > 0)
     faults.push_back("overlap: " + std::to_string(count) + " edges go through the boundary");

@@ -5,6 +5,7 @@
 #include "check.hpp"
 #include "exact.hpp"
 #include "facets.hpp"
+#include "geometry.hpp"
 
 namespace ductile::campaign {
 namespace {
@@ -41,7 +42,7 @@ void check_elements(const Mesh& mesh, Faults& faults) {
   std::set<int> used;
   std::set<Key> seen;
   for (const Cell& element : mesh.elements().corners) {
-    if (orientation(mesh, element) <= 0) ++flat;
+    if (mesh.surface ? !(measure(mesh, element) > 0) : orientation(mesh, element) <= 0) ++flat;
     used.insert(element.begin(), element.end());
     seen.insert(key_of(element));
   }
@@ -59,7 +60,7 @@ bool on_one_side(const Mesh& mesh, const Facet& facet) {
          facets_of_element(mesh, mesh.elements().corners[static_cast<std::size_t>(element)]))
       if (key_of(own) == facet.key) {
         int inversions = 0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(mesh.dimension); ++i)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(mesh.element_dimension()); ++i)
           for (std::size_t j = 0; j < i; ++j) inversions += own[j] > own[i] ? 1 : 0;
         even += inversions % 2 == 0 ? 1 : 0;
       }
@@ -75,15 +76,19 @@ void check_facets(const Mesh& mesh, bool unlisted_boundary, Faults& faults) {
     if (facet.elements.empty()) ++astray;
     if (facet.listed.size() > 1) ++twice;
   }
-  report("structure", crowded, "facets with more than two elements", faults);
-  report("structure", overlapping, "facets with both elements on one side", faults);
-  if (!unlisted_boundary) report("structure", unlisted, "boundary facets not listed", faults);
+  // A surface may have lines of more than two triangles, rims, and one side only.
+  if (!mesh.surface) {
+    report("structure", crowded, "facets with more than two elements", faults);
+    report("structure", overlapping, "facets with both elements on one side", faults);
+  }
+  if (!unlisted_boundary && !mesh.surface)
+    report("structure", unlisted, "boundary facets not listed", faults);
   report("structure", astray, "listed facets of no element", faults);
   report("structure", twice, "facets listed twice", faults);
 }
 
 void check_lines(const Mesh& mesh, Faults& faults) {
-  if (mesh.dimension == 2) return;
+  if (mesh.element_dimension() == 2) return;
   const auto edges = edges_of(mesh.elements().corners, 4);
   std::size_t astray = 0;
   std::set<std::array<int, 2>> seen;
@@ -112,7 +117,8 @@ Faults check_structure(const Mesh& mesh, bool unlisted_boundary) {
 }
 
 Faults check_all(const Mesh& before, const Mesh& after, const Promise& promise) {
-  if (before.dimension != after.dimension) return {"structure: another dimension"};
+  if (before.dimension != after.dimension || before.surface != after.surface)
+    return {"structure: another dimension"};
   Faults faults = check_structure(after);
   if (!faults.empty()) return faults;
   for (const Faults& more :

@@ -12,9 +12,19 @@ struct Piece {
   Box box;
 };
 
-/// Boundary and listed facets by reference.
+/// Boundary and listed facets by reference; the triangles of a surface, and its rims.
 std::map<int, std::vector<Piece>> pieces(const Mesh& mesh) {
+  constexpr int of_rims = -1000000;
   std::map<int, std::vector<Piece>> all;
+  if (mesh.surface) {
+    for (std::size_t i = 0; i < mesh.elements().size(); ++i) {
+      const Cell& element = mesh.elements().corners[i];
+      all[mesh.elements().reference[i]].push_back({element, box_of(mesh, element)});
+    }
+    for (const Facet& facet : facets_of(mesh))
+      if (facet.on_boundary()) all[of_rims].push_back({facet.corners, box_of(mesh, facet.corners)});
+    return all;
+  }
   for (const Facet& facet : facets_of(mesh)) {
     if (facet.elements.empty()) continue;
     const Piece piece = {facet.corners, box_of(mesh, facet.corners)};
@@ -31,18 +41,17 @@ double distance(const Mesh& mesh, const std::vector<Piece>& surface, const Point
   for (const Piece& piece : surface) {
     if (piece.box.distance(point) >= nearest) continue;
     const Cell& c = piece.corners;
-    nearest =
-        std::min(nearest, mesh.dimension == 2
-                              ? distance_to_segment(point, corner(mesh, c, 0), corner(mesh, c, 1))
-                              : distance_to_triangle(point, corner(mesh, c, 0), corner(mesh, c, 1),
-                                                     corner(mesh, c, 2)));
+    nearest = std::min(
+        nearest, c[2] < 0 ? distance_to_segment(point, corner(mesh, c, 0), corner(mesh, c, 1))
+                          : distance_to_triangle(point, corner(mesh, c, 0), corner(mesh, c, 1),
+                                                 corner(mesh, c, 2)));
   }
   return nearest;
 }
 
 /// Sample points of a facet: corners, midpoints of edges, the centre, and points between these.
 std::vector<Point> samples(const Mesh& mesh, const Cell& facet) {
-  const auto corners = static_cast<std::size_t>(mesh.dimension);
+  const std::size_t corners = facet[2] < 0 ? 2 : 3;
   const Point middle = centre(mesh, facet);
   std::vector<Point> points = {middle};
   for (std::size_t i = 0; i < corners; ++i) {

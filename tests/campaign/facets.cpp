@@ -11,7 +11,7 @@ Key key_of(const Cell& cell) {
 }
 
 std::vector<Cell> facets_of_element(const Mesh& mesh, const Cell& e) {
-  if (mesh.dimension == 2)
+  if (mesh.element_dimension() == 2)
     return {{e[0], e[1], -1, -1}, {e[1], e[2], -1, -1}, {e[2], e[0], -1, -1}};
   return {{e[0], e[2], e[1], -1},
           {e[0], e[1], e[3], -1},

@@ -27,18 +27,20 @@ struct Cells {
 };
 
 struct Mesh {
-  int dimension = 2;
+  int dimension = 2;     ///< of space
+  bool surface = false;  ///< triangles in space without tetrahedra: its facets are edges
   std::vector<Point> points;
   std::vector<int> point_reference;  ///< [point]
   std::map<int, Cells> cells;        ///< by number of corners: 2, 3, 4
   /// Sections that list indices: Corners, RequiredVertices, Ridges, RequiredEdges, ...
   std::map<std::string, std::vector<int>> lists;
 
-  int corner_count() const { return dimension + 1; }  ///< of an element
-  Cells& elements() { return cells[dimension + 1]; }
-  Cells& facets() { return cells[dimension]; }
-  const Cells& elements() const { return cells_of(dimension + 1); }
-  const Cells& facets() const { return cells_of(dimension); }
+  int element_dimension() const { return surface ? 2 : dimension; }
+  int corner_count() const { return element_dimension() + 1; }  ///< of an element
+  Cells& elements() { return cells[corner_count()]; }
+  Cells& facets() { return cells[element_dimension()]; }
+  const Cells& elements() const { return cells_of(corner_count()); }
+  const Cells& facets() const { return cells_of(element_dimension()); }
   const Cells& cells_of(int corners) const {
     static const Cells none;
     const auto found = cells.find(corners);

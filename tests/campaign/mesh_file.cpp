@@ -185,6 +185,7 @@ Mesh read_mesh(const std::filesystem::path& path) {
       words.fail("has a section '" + name + "'");
     }
   }
+  mesh.surface = mesh.dimension == 3 && mesh.cells_of(4).size() == 0;
   return mesh;
 }
 

@@ -43,6 +43,7 @@ class MetricMaker {
   /// The factor for all lengths that keeps the number of elements, the longest edge and, in 3D, the
   /// area of the boundary within bounds, all measured in the metric.
   double scaling() {
+    if (mesh_.surface) return surface_scaling();
     const bool flat = mesh_.dimension == 2;
     double complexity = 0, volume = 0;
     for (const Cell& element : unit_.elements().corners) {
@@ -73,17 +74,38 @@ class MetricMaker {
     return factor;
   }
 
+  /// For some tens to some thousands of triangles.
+  double surface_scaling() {
+    double area = 0, plain = 0, longest = 0;
+    for (const Cell& element : unit_.elements().corners) {
+      area += area_of(element);
+      plain += measure(unit_, element);
+    }
+    for (const auto& edge : edges_of(unit_.elements().corners, 3))
+      for (const int end : edge)
+        longest = std::max(
+            longest, std::sqrt(square_length(tensors_[static_cast<std::size_t>(end)],
+                                             unit_.points[static_cast<std::size_t>(edge[1])] -
+                                                 unit_.points[static_cast<std::size_t>(edge[0])])));
+    area = std::max(area, 1e-300);
+    mean_size_ = std::sqrt(plain / area);
+    return std::min(std::sqrt(random_.power(1, 3.3) / area), 40 / longest);
+  }
+
+  /// The area of a triangle in the metric.
+  double area_of(const Cell& triangle) const {
+    const Tensor& m = tensors_[static_cast<std::size_t>(triangle[0])];
+    const Point a = corner(unit_, triangle, 1) - corner(unit_, triangle, 0);
+    const Point b = corner(unit_, triangle, 2) - corner(unit_, triangle, 0);
+    const double aa = square_length(m, a), bb = square_length(m, b);
+    const double ab = (square_length(m, a + b) - aa - bb) / 2;
+    return std::sqrt(std::max(0.0, aa * bb - ab * ab)) / 2;
+  }
+
   double boundary_area() const {
     double area = 0;
-    for (const Facet& facet : facets_of(unit_)) {
-      if (!facet.on_boundary()) continue;
-      const Tensor& m = tensors_[static_cast<std::size_t>(facet.corners[0])];
-      const Point a = corner(unit_, facet.corners, 1) - corner(unit_, facet.corners, 0);
-      const Point b = corner(unit_, facet.corners, 2) - corner(unit_, facet.corners, 0);
-      const double aa = square_length(m, a), bb = square_length(m, b);
-      const double ab = (square_length(m, a + b) - aa - bb) / 2;
-      area += std::sqrt(std::max(0.0, aa * bb - ab * ab)) / 2;
-    }
+    for (const Facet& facet : facets_of(unit_))
+      if (facet.on_boundary()) area += area_of(facet.corners);
     return std::max(area, 1e-300);
   }
 

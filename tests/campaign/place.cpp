@@ -145,7 +145,7 @@ void unlist_some(Random& random, Mesh& mesh) {
 }
 
 void require_some(Random& random, Mesh& mesh) {
-  if (mesh.dimension == 3 && random.chance(0.6)) list_lines(random, mesh);
+  if (mesh.element_dimension() == 3 && random.chance(0.6)) list_lines(random, mesh);
   if (random.chance(0.6)) choose(random, mesh, "RequiredVertices", mesh.points.size());
   if (random.chance(0.5)) choose(random, mesh, "RequiredEdges", mesh.cells_of(2).size());
   if (random.chance(0.5)) choose(random, mesh, "RequiredTriangles", mesh.cells_of(3).size());

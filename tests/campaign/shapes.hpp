@@ -36,4 +36,9 @@ Shape sheets(Random& random);            ///< lens-shaped voids, thin, some of w
 Shape crack(Random& random);    ///< closed, straight or curved, inside or from the boundary
 Shape contact(Random& random);  ///< two bodies that touch along a curve, gap 0 to 1e-9
 
+// ---- Surfaces alone (shapes_surfaces.cpp) ----
+
+/// The boundary and interfaces of a body in 3D: with holes, noise, or triangles that are turned.
+Shape bare_surface(Random& random);
+
 }  // namespace ductile::campaign

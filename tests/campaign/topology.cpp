@@ -26,8 +26,9 @@ int facet_count(const Mesh& mesh, const std::vector<Cell>& elements) {
 int euler_of(const Mesh& mesh, const std::vector<Cell>& elements) {
   const int v = vertex_count(elements);
   const int count = static_cast<int>(elements.size());
-  const int e = static_cast<int>(edges_of(elements, mesh.dimension + 1).size());
-  return mesh.dimension == 2 ? v - e + count : v - e + facet_count(mesh, elements) - count;
+  const int e = static_cast<int>(edges_of(elements, mesh.corner_count()).size());
+  return mesh.element_dimension() == 2 ? v - e + count
+                                       : v - e + facet_count(mesh, elements) - count;
 }
 
 int count_groups(Groups& groups, const std::vector<std::size_t>& members) {
@@ -84,18 +85,21 @@ PartTopology part_topology(const Mesh& mesh, const std::vector<Facet>& facets,
   part.euler = euler_of(mesh, elements);
   part.components = components_by_facets(facets, mesh.elements().size(), members);
   part.boundary_components = components_by_vertices(boundary, mesh.points.size());
-  part.boundary_euler = boundary_euler_of(boundary, mesh.dimension);
+  part.boundary_euler = boundary_euler_of(boundary, mesh.element_dimension());
   return part;
 }
 
-/// Edges of the boundary whose number of facets is not two, in 3D.
+/// Edges of the boundary whose number of facets is not two, in 3D; those of a surface with more
+/// than two triangles.
 std::vector<Cell> non_manifold_edges(const Mesh& mesh, const std::vector<Facet>& facets) {
   std::map<std::array<int, 2>, int> count;
-  if (mesh.dimension == 3)
+  std::vector<Cell> found;
+  for (const Facet& facet : facets)
+    if (mesh.surface && facet.elements.size() > 2) found.push_back(facet.corners);
+  if (mesh.element_dimension() == 3)
     for (const Facet& facet : facets)
       if (facet.on_boundary())
         for (const auto& edge : edges_of({facet.corners}, 3)) ++count[edge];
-  std::vector<Cell> found;
   for (const auto& [edge, uses] : count)
     if (uses != 2) found.push_back({edge[0], edge[1], -1, -1});
   return found;

@@ -71,7 +71,9 @@ class Trial {
     if (settings_.all_checks || random_.chance(0.2)) check_threads(threads);
     if (settings_.all_checks || case_.metric || random_.chance(0.25)) check_info();
     if (settings_.all_checks || random_.chance(0.25)) check_closure(adapted);
-    if (settings_.level_sets && (settings_.all_checks || random_.chance(0.2))) check_level_set();
+    if (settings_.level_sets && !case_.mesh.surface &&
+        (settings_.all_checks || random_.chance(0.2)))
+      check_level_set();
     return outcome_;
   }
 

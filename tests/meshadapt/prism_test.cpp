@@ -64,9 +64,10 @@ void covers_what_is_below(const Parts<Dim, Corners>& parts) {
     test::Random random(seed);
     const auto simplex = flat_simplex<Dim, Corners>(random, 0.1, 0.9);
     const Prism<Dim, Corners> prism(simplex);
+    typename Prism<Dim, Corners>::Clipping clipping;
     double share = 0;
     for (const auto& part : parts) {
-      const auto inside = prism.inside(part);
+      const auto inside = prism.inside(part, clipping);
       share += prism.share(inside);
       for (const auto& place : inside) {
         const Vector<Dim> below = prism.below(place);
@@ -95,19 +96,21 @@ TEST(Prism, FindsHolesAndWhatIsBeside) {
   auto parts = wavy_sheet(4);
   const std::array<Vector<3>, 3> simplex{{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}};
   const Prism<3, 3> prism(simplex);
+  Prism<3, 3>::Clipping clipping;
   double share = 0;
-  for (const auto& part : parts) share += prism.share(prism.inside(part));
+  for (const auto& part : parts) share += prism.share(prism.inside(part, clipping));
   EXPECT_NEAR(share, 1, 1e-12);
-  EXPECT_NEAR(prism.share(prism.inside(parts.front())), 1.0 / 16, 1e-12);
+  EXPECT_NEAR(prism.share(prism.inside(parts.front(), clipping)), 1.0 / 16, 1e-12);
   const std::array<Vector<3>, 3> outside{{{{0, 0.1, 0}}, {{0, 1, 2}}, {{0.8, 1, 0}}}};
-  EXPECT_TRUE(prism.inside(outside).empty());
+  EXPECT_TRUE(prism.inside(outside, clipping).empty());
   const std::array<Vector<3>, 3> larger{{{{-9, -3, 1}}, {{9, -3, 1}}, {{1, 20, 1}}}};
-  EXPECT_NEAR(prism.share(prism.inside(larger)), 1, 1e-12);
+  EXPECT_NEAR(prism.share(prism.inside(larger, clipping)), 1, 1e-12);
 }
 
 TEST(Prism, HasNothingOverWhatIsFlat) {
+  Prism<3, 3>::Clipping clipping;
   const Prism<3, 3> prism({{{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2}}}});
-  for (const auto& part : wavy_sheet(2)) EXPECT_TRUE(prism.inside(part).empty());
+  for (const auto& part : wavy_sheet(2)) EXPECT_TRUE(prism.inside(part, clipping).empty());
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ class Origin(NamedTuple):
     host: np.ndarray
     """(n,) The cell in which each vertex lies, or which is closest."""
     weights: np.ndarray
-    """(n, d + 1) Its barycentric weights there."""
+    """(n, c) Its barycentric weights there, for each of the c corners of a cell."""
 
 
 class Mesh:

@@ -21,7 +21,7 @@ using runtime::ExecutorOptions;
 py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
   auto found = work(
       {}, [&](const Executor& executor) { return meshadapt::origins(executor, before, after); });
-  return arrays_of(std::move(found), before.dimension);
+  return arrays_of(std::move(found), element_dimension(before));
 }
 
 /// The type of the rows of an array, whether they belong to cells (else to vertices), and whether

@@ -85,10 +85,11 @@ extern template std::vector<Metric<3>> recover_hessian(const runtime::Executor&,
 // ----
 
 /// The integral over the mesh of sqrt(det metric), linear in each element; MeshStatistics has the
-/// same figure. Thread safety of this and the following: one caller; runs on the executor.
-template <int Dim>
-double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
-                  const std::vector<Metric<Dim>>& metric_of);
+/// same figure. On a surface the determinant is that in the plane of each triangle. Thread safety
+/// of this and the following: one caller; runs on the executor.
+template <int Dim, int Space>
+double complexity(const runtime::Executor& executor, const FixedMesh<Dim, Space>& mesh,
+                  const std::vector<Metric<Space>>& metric_of);
 
 /// The complexity of a metric for which an adapted mesh has about this many elements: 2.25
 /// triangles or 9.5 tetrahedra per unit of complexity, within 10 %, measured on varying metrics.
@@ -120,17 +121,21 @@ struct MetricFit {
 /// as close as the bounds allow. With a gradation, also grades them; the complexity after that is
 /// within 2 % of the wanted one. Throws InputError unless one goal is above 0 and the other 0, if
 /// bounds or gradation are out of range, or if there is not a metric for each vertex.
-template <int Dim>
+template <int Dim, int Space>
 MetricFit scale_to_complexity(const runtime::Executor& executor,
-                              std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
-                              const ComplexityGoal& goal);
+                              std::vector<Metric<Space>>& metric_of,
+                              const FixedMesh<Dim, Space>& mesh, const ComplexityGoal& goal);
 
 extern template double complexity(const runtime::Executor&, const FixedMesh<2>&,
                                   const std::vector<Metric<2>>&);
+extern template double complexity(const runtime::Executor&, const FixedMesh<2, 3>&,
+                                  const std::vector<Metric<3>>&);
 extern template double complexity(const runtime::Executor&, const FixedMesh<3>&,
                                   const std::vector<Metric<3>>&);
 extern template MetricFit scale_to_complexity(const runtime::Executor&, std::vector<Metric<2>>&,
                                               const FixedMesh<2>&, const ComplexityGoal&);
+extern template MetricFit scale_to_complexity(const runtime::Executor&, std::vector<Metric<3>>&,
+                                              const FixedMesh<2, 3>&, const ComplexityGoal&);
 extern template MetricFit scale_to_complexity(const runtime::Executor&, std::vector<Metric<3>>&,
                                               const FixedMesh<3>&, const ComplexityGoal&);
 
@@ -180,8 +185,10 @@ struct SolutionMetric {
 /// Each component gives a metric from its Hessian, taken as 0 if the component is linear up to
 /// rounding; they are intersected, graded if wanted, and scaled once more unless the goal is an
 /// error. A goal of error applies to each component before grading. The reported error is the
-/// largest, for the metric returned. Throws InputError as above, or if the field is not of this
-/// mesh or has values that are not finite. Thread safety: one caller; runs on the executor.
+/// largest, for the metric returned. On a surface, derivatives are those in its tangent planes, by
+/// least squares alone; ridges belong to the surfaces on both sides. Throws InputError as above, or
+/// if the field is not of this mesh or has values that are not finite. Thread safety: one caller;
+/// runs on the executor.
 SolutionMetric solution_metric(const runtime::Executor& executor, const AnyMesh& mesh,
                                const AnyField& field, const SolutionMetricOptions& options);
 

@@ -73,9 +73,10 @@ struct GradationReport {
 /// InputError if the factor is below 1 or not finite, the tolerance or the sweeps are negative, or
 /// there is not a metric (see metric_of) for each vertex; std::bad_alloc if memory runs out. Thread
 /// safety: one caller; runs on the executor.
-template <int Dim>
+template <int Dim, int Space>
 GradationReport limit_gradation(const runtime::Executor& executor,
-                                std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
+                                std::vector<Metric<Space>>& metric_of,
+                                const FixedMesh<Dim, Space>& mesh,
                                 const GradationOptions& options = {});
 
 extern template Metric<2> intersect(const Metric<2>&, const Metric<2>&);
@@ -90,6 +91,8 @@ extern template void bound_sizes(const runtime::Executor&, std::vector<Metric<3>
                                  const SizeBounds&);
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
                                                 const FixedMesh<2>&, const GradationOptions&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
+                                                const FixedMesh<2, 3>&, const GradationOptions&);
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
                                                 const FixedMesh<3>&, const GradationOptions&);
 

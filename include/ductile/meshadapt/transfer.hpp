@@ -39,10 +39,10 @@ struct TransferredField {
 };
 
 /// The values of the old field, linear in each element, at the new vertices. Keeps bounds, not
-/// integrals. A vertex outside the old mesh gets the value at the closest point of it; on a closed
-/// crack, that of its own side. Throws InputError if a mesh is not valid (see make_fixed_mesh), a
-/// vertex of either is not within -1e150 to 1e150, or the field is not of the old one. Thread
-/// safety: one caller; runs on the executor.
+/// integrals. A vertex outside the old mesh, or off a surface alone, gets the value at the closest
+/// point of it; on a closed crack, that of its own side. Throws InputError if a mesh is not valid
+/// (see make_fixed_mesh), a vertex of either is not within -1e150 to 1e150, or the field is not of
+/// the old one. Thread safety: one caller; runs on the executor.
 TransferredField interpolate_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                    const AnyMesh& to);
 
@@ -128,16 +128,16 @@ struct Origins {
   /// [vertex] The old vertex at exactly the same position; a moved vertex is new. Among several at
   /// one position, as on a closed crack, the one on the same side.
   std::vector<VertexId> vertex;
-  /// [facet] The listed facet (2D: edge, 3D: triangle) with the same vertices. All required facets
-  /// have one.
+  /// [facet] The listed facet (2D and surfaces: edge, 3D: triangle) with the same vertices. All
+  /// required facets have one.
   std::vector<std::uint32_t> facet;
   /// [element] The element with the same vertices and the same reference.
   std::vector<ElementId> element;
   /// [vertex] The old element that contains it, or the closest one for a vertex outside, as on a
   /// moved curved boundary. Never none.
   std::vector<ElementId> host;
-  /// [vertex * (dimension + 1) + corner] Its barycentric weights in that element, in the order of
-  /// its corners: none below 0, sum 1. Outside, those of the closest point.
+  /// [vertex * corners of an element + corner] Its barycentric weights in that element, in the
+  /// order of its corners: none below 0, sum 1. Outside, those of the closest point.
   std::vector<double> weight;
 
   friend bool operator==(const Origins&, const Origins&) = default;
