@@ -95,7 +95,7 @@ class Attempt {
       throw InputError(name_of(input_) + ": expected a metric to adapt it to, found none");
     if (metric == nullptr) return std::nullopt;
     if (pass_ < most_passes) return with_limits(*metric);
-    warn(metric->name + ": the mesh was adapted " + std::to_string(pass_) +
+    warn(name_of(*metric) + ": the mesh was adapted " + std::to_string(pass_) +
          " times, and metrics still come; they are left out");
     return std::nullopt;
   }

@@ -5,6 +5,7 @@
 
 #include "checks/faults.hpp"
 #include "geometry/damage.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -70,7 +71,7 @@ void Rescue<Dim>::complete(AdaptReport& report, bool is_right) const {
            " vertices of curved boundaries";
   else if (!options_.lock_boundary)
     kept = "all facets of curved boundaries";
-  report.warnings.push_back(input_.mesh().name + ": adapted " + std::to_string(attempts_) +
+  report.warnings.push_back(name_of(input_.mesh()) + ": adapted " + std::to_string(attempts_) +
                             " times, because " +
                             "boundaries that are closer than the surface tolerance met (" +
                             first_fault_ + "); " + kept + " keep their shape");

@@ -105,9 +105,10 @@ class MeshMaker {
     const auto turned = std::count(turned_.begin(), turned_.end(), 1);
     const auto first = std::find(turned_.begin(), turned_.end(), 1) - turned_.begin();
     if (turned == std::ssize(turned_))
-      warnings_.push_back(any_.name + ": all elements were inverted; they have been reoriented");
+      warnings_.push_back(name_of(any_) +
+                          ": all elements were inverted; they have been reoriented");
     else
-      warnings_.push_back(any_.name + ": " + std::to_string(turned) + " of " +
+      warnings_.push_back(name_of(any_) + ": " + std::to_string(turned) + " of " +
                           std::to_string(turned_.size()) +
                           " elements were listed the other way round and have been turned; the "
                           "first is " +
@@ -120,7 +121,7 @@ class MeshMaker {
         [&](std::size_t v) { return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))}; },
         [](std::size_t a, std::size_t b) { return a + b; });
     if (unused != 0)
-      warnings_.push_back(any_.name + ": " + std::to_string(unused) + " of " +
+      warnings_.push_back(name_of(any_) + ": " + std::to_string(unused) + " of " +
                           std::to_string(mesh_.vertex_slots()) +
                           " vertices belong to no element and are left out");
   }

@@ -14,6 +14,7 @@
 #include "geometry/check_input.hpp"
 #include "geometry/surface_mesh.hpp"
 #include "geometry/triangle_edges.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -78,7 +79,7 @@ class SurfaceMender {
     const auto first = std::find(flags.begin(), flags.end(), flag);
     if (first == flags.end()) return;
     ++warnings_said_;
-    warnings_.push_back(any_.name + ": " +
+    warnings_.push_back(name_of(any_) + ": " +
                         std::to_string(std::count(flags.begin(), flags.end(), flag)) + " of " +
                         std::to_string(flags.size()) + " triangles " + what + "; the first is " +
                         entity("triangle", static_cast<std::size_t>(first - flags.begin())));

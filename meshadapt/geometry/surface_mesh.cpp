@@ -17,6 +17,7 @@
 #include "geometry/tag_boundary.hpp"
 #include "geometry/triangle_edges.hpp"
 #include "mesh/neighbours.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -102,7 +103,7 @@ class SurfaceMeshMaker {
   }
 
  private:
-  void warn(const std::string& text) { warnings_.push_back(any_.name + ": " + text); }
+  void warn(const std::string& text) { warnings_.push_back(name_of(any_) + ": " + text); }
 
   // ---- The mesh ----
 

@@ -14,6 +14,7 @@
 #include "mesh/flatten.hpp"
 #include "mesh/listed_twice.hpp"
 #include "mesh/neighbours.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -67,7 +68,7 @@ class BoundaryTagger {
           merge(edges[at->second], edge);
         }
       }
-      if (!twice.empty()) making_.warnings.push_back(making_.any.name + ": " + twice.warning());
+      if (!twice.empty()) making_.warnings.push_back(name_of(making_.any) + ": " + twice.warning());
       report_loose_edges(loose, first_loose);
     }
     return edges;
@@ -110,7 +111,7 @@ class BoundaryTagger {
     }
     if (!twice.empty()) {
       std::erase_if(facets, [](const TaggedFacet<Dim>& facet) { return facet.element == none; });
-      making_.warnings.push_back(making_.any.name + ": " + twice.warning());
+      making_.warnings.push_back(name_of(making_.any) + ": " + twice.warning());
     }
     return facets;
   }
@@ -161,7 +162,7 @@ class BoundaryTagger {
       facets.push_back(facet);
     }
     if (unlisted_boundary != 0)
-      making_.warnings.push_back(making_.any.name + ": " + std::to_string(unlisted_boundary) +
+      making_.warnings.push_back(name_of(making_.any) + ": " + std::to_string(unlisted_boundary) +
                                  " boundary " + facet_name<Dim>() + "s were not listed (" +
                                  std::to_string(listed) + " were); they get reference 0" +
                                  at_one_place(unlisted).in_file);
@@ -202,7 +203,7 @@ class BoundaryTagger {
   void report_loose_edges(std::size_t count, std::size_t first) {
     if (count == 0) return;
     making_.warnings.push_back(
-        making_.any.name + ": " + std::to_string(count) + " of " +
+        name_of(making_.any) + ": " + std::to_string(count) + " of " +
         std::to_string(making_.any.edges.size()) +
         " listed edges belong to no tetrahedron and are left out; the first is " +
         entity("edge", first));

@@ -175,6 +175,7 @@ class MoveOptions:
     bodies: Sequence[int]
     boundaries: Sequence[int]
     remesh_below: float
+    turned: Sequence[str]
     keep_partial: bool
     smallest_size: float
     largest_size: float
