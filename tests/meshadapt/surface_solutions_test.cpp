@@ -103,11 +103,12 @@ TEST(SurfaceSolutions, AreAsInThePlane) {
   AnyMesh mesh = sheet(12, 12, place), flat = mesh;
   std::mt19937 random(5);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const auto inner = [&](std::size_t i) { return i > 0 && i < 12; };
-    const double shift = inner(v % 13) && inner(v / 13) ? 0.02 : 0;
+    const std::size_t column = v % 13, row = v / 13;
+    const auto inner = [](std::size_t i) { return i > 0 && i < 12; };
+    const double shift = inner(column) && inner(row) ? 0.02 : 0;
     std::uniform_real_distribution<double> uniform(-shift, shift);
-    const double u = static_cast<double>(v % 13) / 12 + uniform(random),
-                 w = static_cast<double>(v / 13) / 12 + uniform(random);
+    const double u = static_cast<double>(column) / 12 + uniform(random),
+                 w = static_cast<double>(row) / 12 + uniform(random);
     std::ranges::copy(place(u, w).x, &mesh.coordinates[3 * v]);
     flat.coordinates[2 * v] = u;
     flat.coordinates[2 * v + 1] = w;
