@@ -141,8 +141,21 @@ def part(mesh, cells):
     return ductile.Mesh(mesh.points, mesh.cells[cells], refs=mesh.refs[cells])
 
 
+def waves_on(ball):
+    """The surface of a ball alone, cut along a function."""
+    used, facets = np.unique(ball.facets[ball.facet_refs == 10], return_inverse=True)
+    points, facets = ball.points[used], facets.reshape(-1, 3)
+    a, b, c = (points[facets[:, i]] - 0.5 for i in range(3))
+    inwards = np.einsum("ij,ij->i", np.cross(a, b), c) < 0
+    facets[inwards] = facets[inwards, ::-1]
+    x, y, z = 15 * points.T
+    waves = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    mesh = ductile.Mesh(points, facets).cut(waves).remesh(0.03, hausd=0.002)
+    return mesh, mesh.refs
+
+
 def level_sets():
-    """A sphere, a gyroid, two materials, and a disc that is carried round in fifty steps."""
+    """A sphere, a gyroid, a surface alone, two materials, and a disc that is carried round in fifty steps."""
     box = ductile.box((1, 1, 1), (12, 12, 12))
     cut = box.cut(np.linalg.norm(box.points - 0.5, axis=1) - 0.3)
     for name, mesh in (("cut", cut), ("adapted", cut.remesh(0.08, hausd=0.004, hgrad=1.3))):
@@ -152,6 +165,8 @@ def level_sets():
     gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
     mesh = box.cut(gyroid).remesh(0.07, hausd=0.01, hgrad=1.3)
     draw("level-set-gyroid", part(mesh, mesh.refs == 3))
+
+    draw("level-set-surface", *waves_on(cut.remesh(0.05, hausd=0.003, hgrad=1.3)))
 
     square, even = shaken(16, 0.2), ductile.box((1, 1), (16, 16))
     points = np.array(square.points)

@@ -111,7 +111,9 @@ def _solid(mesh: Mesh, values: Optional[np.ndarray], width: int) -> str:
 
 
 def _surface(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Facets of one cell, turned outwards, and their cells."""
+    """Facets of one cell, turned outwards, and their cells; a surface alone gives its triangles as they are turned."""
+    if mesh.cells.shape[1] == 3:
+        return mesh.cells, np.arange(len(mesh.cells))
     turned = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
     facets = mesh.cells[:, turned].reshape(-1, 3)
     owner = np.repeat(np.arange(len(mesh.cells)), 4)

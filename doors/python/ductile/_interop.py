@@ -211,11 +211,12 @@ def to_dmplex(mesh: Mesh, comm: Any) -> Any:
     first = PETSc.Comm(comm).getRank() == 0
     integers = PETSc.IntType
     cells = mesh.cells.astype(integers)
-    if mesh.dim == 3:
+    dimension = cells.shape[1] - 1
+    if dimension == 3:
         cells = cells[:, [0, 2, 1, 3]]  # PETSc's tetrahedra are turned the other way
     count = len(cells) if first else 0
     points = mesh.points if first else mesh.points[:0]
-    plex = PETSc.DMPlex().createFromCellList(mesh.dim, cells[:count], points, interpolate=True,
+    plex = PETSc.DMPlex().createFromCellList(dimension, cells[:count], points, interpolate=True,
                                              comm=comm)
     first_cell, _ = plex.getHeightStratum(0)
     first_vertex, last_vertex = plex.getDepthStratum(0)

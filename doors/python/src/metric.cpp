@@ -108,8 +108,15 @@ void intersect_with(const Executor& executor, std::vector<Metric<Dim>>& metric_o
 template <int Dim>
 void limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                      const AnyMesh& mesh, double factor) {
-  const auto fixed = meshadapt::make_fixed_mesh<Dim>(executor, mesh);
-  meshadapt::limit_gradation<Dim>(executor, metric_of, fixed, {.factor = factor});
+  const meshadapt::GradationOptions options{.factor = factor};
+  if constexpr (Dim == 3)
+    if (is_surface(mesh)) {
+      meshadapt::limit_gradation(executor, metric_of,
+                                 meshadapt::make_fixed_mesh<2, 3>(executor, mesh), options);
+      return;
+    }
+  meshadapt::limit_gradation(executor, metric_of, meshadapt::make_fixed_mesh<Dim>(executor, mesh),
+                             options);
 }
 
 void bind_operations(py::module_& module) {

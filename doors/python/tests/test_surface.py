@@ -62,3 +62,31 @@ def test_follows_a_metric_and_keeps_what_is_required():
         assert (out.points == mesh.points[v]).all(axis=1).any()
     upper = (out.points[out.cells].mean(axis=1)[:, 2] > 0).sum()
     assert upper > 2 * (len(out.cells) - upper)
+
+
+def test_is_drawn(tmp_path):
+    mesh = ductile.Mesh(*sphere())
+    for by in (None, mesh.points[:, 2]):
+        picture = ductile.draw(mesh, tmp_path / "sphere.svg", by)
+        assert picture.count("<path") > len(mesh.cells) / 3
+    assert "triangles" in mesh._repr_html_()
+
+
+def test_limits_growth():
+    mesh = ductile.Mesh(*sphere())
+    wanted = np.full(len(mesh.points), 0.5)
+    wanted[0] = 0.01
+    graded = np.sqrt(1 / np.asarray(ductile.grade(mesh, wanted, 1.3))[:, 0])
+    assert graded[0] == pytest.approx(0.01)
+    near = np.linalg.norm(mesh.points - mesh.points[0], axis=1) < 0.2
+    assert graded[near].max() < 0.2
+    assert graded.max() < 0.5 + 1e-9
+
+
+def test_becomes_a_dmplex():
+    pytest.importorskip("petsc4py.PETSc")
+    mesh = ductile.Mesh(*sphere(8))
+    plex = mesh.to_dmplex()
+    assert (plex.getDimension(), plex.getCoordinateDim()) == (2, 3)
+    first, last = plex.getHeightStratum(0)
+    assert last - first == len(mesh.cells)
