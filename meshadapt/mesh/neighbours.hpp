@@ -120,9 +120,13 @@ class NeighbourFinder {
   void crowd(Met& met) {
     ElementId& other = neighbour_at(met.element, met.facet);
     if (met.twice && other != crowded)
-      std::ranges::replace(neighbour_of_[other], met.element, crowded);
+      neighbour_at(other, facet_number<Dim>(corners_of_[other], corners_at(met))) = crowded;
     met.twice = true;
     other = crowded;
+  }
+
+  Facet<Dim> corners_at(const Met& met) const {
+    return facet_of<Dim>(corners_of_[met.element], met.facet);
   }
 
   ElementId& neighbour_at(ElementId element, int facet) {

@@ -100,6 +100,22 @@ TEST(Adjacency, KnowsWhereThreeElementsMeet) {
   }
 }
 
+/// Two triangles share all edges, a third has one of these; the other two edges keep their pair.
+TEST(Adjacency, IsCrowdedOnlyWhereThreeElementsMeet) {
+  AnyMesh mesh;
+  mesh.dimension = 2;
+  mesh.coordinates = {0, 0, 1, 0, 0, 1, 1, 1};
+  mesh.vertex_reference.assign(4, 0);
+  mesh.triangles.add({0, 1, 2}, 1);
+  mesh.triangles.add({1, 0, 2}, 1);
+  mesh.triangles.add({0, 1, 3}, 1);
+  const Executor executor({.threads = 1});
+  const AdjacentMesh adjacent(executor, mesh);
+  const auto& adjacency = adjacent.adjacency<2>();
+  for (ElementId e = 0; e < 2; ++e)
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(adjacency.across(e, i), i == 2 ? crowded : 1 - e);
+}
+
 TEST(Adjacency, FindsNoFacetWhereThereIsNone) {
   const AnyMesh mesh = test::make_grid(test::unit_grid(3, 2));
   const Executor executor({.threads = 1});
