@@ -79,6 +79,7 @@ TEST(ProgressBar, GoesByTheChangesBetweenStepsOfSmoothingAndNeverBack) {
 }
 
 TEST(ProgressBar, IsShownOnATerminalOnly) {
+  // The bar is shown on terminals only, and only `script` of util-linux makes one for a test.
   if (std::system("script --version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "there is no `script`, which makes a terminal";
   const Folder folder;

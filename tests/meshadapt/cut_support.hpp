@@ -21,6 +21,7 @@
 #include "core/quality.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/level_set.hpp"
+#include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
@@ -407,6 +408,16 @@ inline std::string refusal(const Case& c) {
     return error.what();
   }
   return "no error";
+}
+
+/// Expects the same mesh, values and origins, bit for bit.
+inline void expect_same_bytes(const CutMesh& made, const CutMesh& expected) {
+  EXPECT_TRUE(made.mesh == expected.mesh);
+  EXPECT_EQ(test::bits(made.mesh.coordinates), test::bits(expected.mesh.coordinates));
+  EXPECT_EQ(test::bits(made.value), test::bits(expected.value));
+  EXPECT_EQ(made.vertex_origin, expected.vertex_origin);
+  EXPECT_EQ(made.element_origin, expected.element_origin);
+  EXPECT_EQ(made.facet_origin, expected.facet_origin);
 }
 
 }  // namespace ductile::meshadapt::cut_test

@@ -198,12 +198,7 @@ TEST(SurfaceCut, GivesTheSameBytesAtAnyNumberOfThreads) {
     const CutMesh expected = cut(Executor({.threads = 1}), c.mesh, c.values, c.options);
     for (const int threads : {2, 3, 4, 8}) {
       const CutMesh made = cut(Executor({.threads = threads}), c.mesh, c.values, c.options);
-      EXPECT_TRUE(made.mesh == expected.mesh);
-      EXPECT_EQ(test::bits(made.mesh.coordinates), test::bits(expected.mesh.coordinates));
-      EXPECT_EQ(test::bits(made.value), test::bits(expected.value));
-      EXPECT_EQ(made.vertex_origin, expected.vertex_origin);
-      EXPECT_EQ(made.element_origin, expected.element_origin);
-      EXPECT_EQ(made.facet_origin, expected.facet_origin);
+      expect_same_bytes(made, expected);
     }
   }
 }

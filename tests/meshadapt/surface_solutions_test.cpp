@@ -29,17 +29,6 @@ using namespace surface_support;
 using runtime::Executor;
 using Function = std::function<double(const Vector<3>&)>;
 
-const Executor& two() {
-  static const Executor executor({.threads = 2});
-  return executor;
-}
-
-AdaptOptions within(double tolerance) {
-  AdaptOptions options;
-  options.make.hausdorff_tolerance = tolerance;
-  return options;
-}
-
 AnyField sampled(const AnyMesh& mesh, const Function& f) {
   std::vector<double> values;
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) values.push_back(f(at(mesh, v)));

@@ -12,7 +12,9 @@
 #include <set>
 #include <vector>
 
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt::surface_support {
 
@@ -169,6 +171,17 @@ inline double volume(const AnyMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     sum += dot(at(mesh, mesh.triangles.vertices[t][0]), normal(mesh, t)) / 6;
   return sum;
+}
+
+inline const runtime::Executor& two() {
+  static const runtime::Executor executor({.threads = 2});
+  return executor;
+}
+
+inline AdaptOptions within(double tolerance) {
+  AdaptOptions options;
+  options.make.hausdorff_tolerance = tolerance;
+  return options;
 }
 
 }  // namespace ductile::meshadapt::surface_support

@@ -26,17 +26,6 @@ namespace {
 using runtime::Executor;
 using namespace surface_support;
 
-const Executor& two() {
-  static const Executor executor({.threads = 2});
-  return executor;
-}
-
-AdaptOptions within(double tolerance) {
-  AdaptOptions options;
-  options.make.hausdorff_tolerance = tolerance;
-  return options;
-}
-
 /// Adapts to a size, and checks what holds of all results.
 AdaptedMesh adapted_to(const AnyMesh& mesh, const AnyField& metric, const AdaptOptions& options) {
   AdaptedMesh adapted = adapt(two(), mesh, metric, options);

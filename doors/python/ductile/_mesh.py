@@ -406,7 +406,7 @@ class Mesh:
         with named(self.dim):
             rows = None if metric is None else as_rows(self, metric, runs)
             data, tensors, carried, origin, report = _ductile.move(
-                self._data, vectors, rows, (given, flag(conservative, "conservative")), options, runs)
+                self._data, vectors, (rows, given, flag(conservative, "conservative")), options, runs)
         out = Mesh._of(data)
         out.metric, out.report, out._origin = tensors, report, Origin(*origin)
         for (name, _, on_cells, _), values in zip(given, carried):

@@ -25,9 +25,9 @@ using meshadapt::NamedField;
 
 /// A field of a mesh: name, type, whether it is on cells, rows.
 using CarriedField = std::tuple<std::string, AnyField::Type, bool, Given<double>>;
-/// Fields, and whether their integrals are kept.
-using CarriedFields = std::pair<std::vector<CarriedField>, bool>;
-using MovedMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
+/// The metric, fields, and whether the integrals of these are kept.
+using Carried = std::tuple<std::optional<std::tuple<Given<double>, AnyField::Type>>,
+                           std::vector<CarriedField>, bool>;
 
 py::list taken(std::vector<NamedField>& fields, int dimension) {
   py::list list;
@@ -39,16 +39,16 @@ py::list taken(std::vector<NamedField>& fields, int dimension) {
   return list;
 }
 
-py::tuple moved(const AnyMesh& mesh, const Given<double>& displacement, const MovedMetric& metric,
-                const CarriedFields& fields, const MoveOptions& given_options,
-                const runtime::ExecutorOptions& threads) {
+py::tuple moved(const AnyMesh& mesh, const Given<double>& displacement, const Carried& given,
+                const MoveOptions& given_options, const runtime::ExecutorOptions& threads) {
+  const auto& [metric, fields, conservatively] = given;
   MoveOptions options = given_options;
   std::vector<NamedField> carried;
-  for (const auto& [name, type, on_cells, rows] : fields.first)
+  for (const auto& [name, type, on_cells, rows] : fields)
     carried.push_back({name, type, copied(rows),
                        on_cells ? NamedField::Place::elements : NamedField::Place::vertices});
   options.fields = carried;
-  options.carrying = {fields.second ? Carrying::conservatively : Carrying::by_value};
+  options.carrying = {conservatively ? Carrying::conservatively : Carrying::by_value};
   const AnyField vectors =
       field_of(displacement, AnyField::Type::vector, mesh.dimension, "displacement");
   std::optional<AnyField> sizes;

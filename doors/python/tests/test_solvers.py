@@ -14,6 +14,7 @@ import ductile
 
 EXAMPLES = pathlib.Path(__file__).parents[3] / "docs" / "examples"
 PROGRAM = os.environ.get("DUCTILE_PROGRAM", "")
+# The scripts of FreeFEM call the program; the package for Python is also built and tested without it.
 needs_program = pytest.mark.skipif(not PROGRAM, reason="the program is not built with the package")
 
 

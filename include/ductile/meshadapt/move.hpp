@@ -49,8 +49,8 @@ struct MoveOptions {
   std::span<const NamedField> fields = {};
   /// How: one entry for all fields, or one for each.
   std::vector<Carrying> carrying = {Carrying::by_value};
-  /// Names of the fields of vectors or tensors that turn with the mesh, such as directions of
-  /// fibres. The components of all others are in the axes of space, as those of a velocity are.
+  /// Names of the vector and tensor fields that turn with the mesh, such as the direction of fibres
+  /// in a material. All other fields, such as velocities, keep their values.
   std::vector<std::string> turned = {};
 };
 
