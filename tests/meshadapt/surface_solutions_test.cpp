@@ -20,6 +20,7 @@
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "support/bits.hpp"
+#include "support/trials.hpp"
 #include "surface_support.hpp"
 
 namespace ductile::meshadapt::surface_solutions_test {
@@ -68,6 +69,7 @@ double interpolation_error(const AnyMesh& mesh, const Function& f) {
 }
 
 TEST(SurfaceSolutions, ErrorsFallAtTheOptimalRate) {
+  if (test::sanitized) GTEST_SKIP();
   const Function front = [](const Vector<3>& p) {
     return std::tanh((p[1] - 0.3 * p[0] - 0.35) / 0.05);
   };
