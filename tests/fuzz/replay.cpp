@@ -15,6 +15,18 @@ extern "C" int LLVMFuzzerInitialize(const int* count, char*** words);
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
 // NOLINTEND(readability-identifier-naming)
 
+// Ends the program at a request out of all proportion to files of a kilobyte, as libFuzzer does.
+void* operator new(std::size_t size) {
+  void* memory = size > 16U << 20U ? nullptr : std::malloc(size == 0 ? 1 : size);
+  if (memory == nullptr) {
+    std::fprintf(stderr, "fuzz: a request for %zu bytes of memory\n", size);
+    std::abort();
+  }
+  return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
