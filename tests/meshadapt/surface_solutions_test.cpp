@@ -212,7 +212,7 @@ std::vector<Adapted> adapted_surfaces() {
       mesh.required_triangles.push_back(t);
       mesh.required_vertices.push_back(mesh.triangles.vertices[t - 1][random() % 3]);
     }
-    const AnyField metric = constant_metric(mesh, random() % 2 == 0 ? 0.08 : 0.5);
+    const AnyField metric = constant_metric(mesh, random() % 2 == 0 ? 0.12 : 0.5);
     all.push_back({mesh, adapt(two(), mesh, metric, within(0.01)).mesh});
   }
   return all;
