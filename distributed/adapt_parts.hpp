@@ -45,7 +45,7 @@ struct AdaptPartsOptions : AdaptPartOptions {
 struct AdaptedParts {
   Part part;  ///< numbered in the order of the ranks; lists its boundary
   Interfaces interfaces;
-  std::int64_t own = 0;  ///< number of vertices that this rank has numbered
+  std::int64_t own = 0;               ///< number of vertices that this rank has numbered
   meshadapt::Warnings warnings = {};  ///< of adapt() on all ranks, see warnings_of_ranks()
 };
 

@@ -96,21 +96,24 @@ class OrderedRun {
     const bool is_alone = executor_.threads() == 1 && sharing_ == Sharing::where_faster;
     const std::size_t part = is_alone ? work.size() : Windows::most_items;
     for (std::size_t begin = 0; begin < work.size(); begin += part) {
-      const std::size_t count = std::min<std::size_t>(part, work.size() - begin);
-      const auto item_at = [&](std::size_t i) -> Item { return work[begin + i]; };
-      const auto plain = [&] { run_plainly(count, item_at, applied); };
-      const auto at_once = [&] { run_at_once(count, item_at, applied); };
+      const std::size_t end = std::min<std::size_t>(begin + part, work.size());
+      const auto plain = [&] {
+        report_.planned += end - begin;
+        run_plainly(work, begin, end, applied);
+      };
+      const auto at_once = [&] { run_at_once(work, begin, end, applied); };
       if (sharing_ == Sharing::always) {
         at_once();
       } else if (is_alone) {
         plain();
       } else {
-        faster_.run(count, plain, at_once);
+        faster_.run(end - begin, plain, at_once);
       }
     }
   }
 
  private:
+  using Plan = typename Op::Plan;
   using Windows = ReservationWindows<Op>;
 
   struct Commit {
@@ -118,33 +121,32 @@ class OrderedRun {
     void postpone(const Item& item) { wake(item); }
   };
 
-  bool run_one(const Item& item) {
+  /// What each item changes is local, so that compilers can keep it in registers.
+  void run_plainly(const auto& work, std::size_t begin, std::size_t end, auto&& applied) {
     ReachAll reach;
-    if (!op_.plan(item, plan_, reach)) return false;
-    op_.apply(item, plan_, commit_);
-    ++report_.applied;
-    return true;
-  }
-
-  void run_plainly(std::size_t count, auto&& item_at, auto&& applied) {
-    report_.planned += count;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Item item = item_at(i);
-      if (run_one(item)) applied(item);
+    Plan plan = std::move(plan_);
+    std::size_t done = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Item item = work[i];
+      if (!op_.plan(item, plan, reach)) continue;
+      op_.apply(item, plan, commit_);
+      applied(item);
+      ++done;
     }
+    report_.applied += done;
+    plan_ = std::move(plan);
   }
 
   /// An item without a plan is done, because earlier items of its window cannot give it one.
-  void run_at_once(std::size_t count, auto&& item_at, auto&& applied) {
+  void run_at_once(const auto& work, std::size_t begin, std::size_t end, auto&& applied) {
     if (!windows_) windows_.emplace(executor_, op_, report_);
     const auto won = [&](const Item& item, std::span<const Item> woken) {
       for (const Item& other : woken) commit_.wake(other);
       applied(item);
     };
-    const auto lost = [&](const Item& item) {
-      if (run_one(item)) applied(item);
-    };
-    windows_->run(count, item_at, won, lost);
+    const auto lost = [&](const Item& item) { run_plainly(std::span(&item, 1), 0, 1, applied); };
+    const auto item_at = [&](std::size_t i) -> Item { return work[begin + i]; };
+    windows_->run(end - begin, item_at, won, lost);
   }
 
   const Executor& executor_;
@@ -154,7 +156,7 @@ class OrderedRun {
   Sharing sharing_;
   FasterWay faster_;
   std::optional<Windows> windows_;
-  typename Op::Plan plan_{};
+  Plan plan_{};  // keeps its memory from part to part
 };
 
 /// Runs all of the work, which has size() and operator[], by the strategy in_order, where no item
