@@ -46,8 +46,8 @@ class FasterWay {
   }
 
  private:
-  static constexpr std::size_t tried_often = 32, tried_seldom = 512;  // parts between two trials
-  static constexpr double too_short_to_share = 8000;                  // nanoseconds, a part
+  static constexpr std::size_t tried_often = 64, tried_seldom = 1024;  // parts between two trials
+  static constexpr double too_short_to_share = 8000;                   // nanoseconds, a part
   static constexpr double too_fast_to_share = 8;  // nanoseconds two cores need to share an item
 
   /// Calls run(); returns nanoseconds.
@@ -59,7 +59,7 @@ class FasterWay {
   }
 
   void begin_trial() {
-    trial_ = 6;  // the best of three parts each, because other programs may use the cores meanwhile
+    trial_ = 4;  // the best of two parts each, because other programs may use the cores meanwhile
     best_plain_ = best_at_once_ = std::numeric_limits<double>::max();
   }
   void end_trial() {
