@@ -190,7 +190,7 @@ TEST(Colouring, FindsAllClashesOfSpeculation) {
     for (const ColouringMethod method : {ColouringMethod::detect_again, ColouringMethod::two_phase})
       for (int threads : {2, 3, 4, 8, 40}) {
         const Executor executor({.threads = threads});
-        for (int run = 0; run < 5; ++run)
+        for (int run = 0; run < 2; ++run)
           EXPECT_TRUE(is_proper(executor, graph.view(), colour(executor, graph.view(), method)))
               << graph.name << ", threads " << threads;
       }
