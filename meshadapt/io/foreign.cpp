@@ -21,81 +21,70 @@ constexpr const char* by_meshio_avs =
     "; convert it first, as with meshio convert --input-format avsucd FILE mesh.vtu";
 constexpr const char* by_gmsh = "; convert it first, as with gmsh FILE -save -o mesh.msh";
 constexpr const char* by_paraview = "; save it as .vtu first, as in ParaView by Save Data";
+constexpr const char* by_meshing = "; mesh it first, as with gmsh -3 FILE";
 constexpr const char* by_foam =
     "; convert it first, as with foamToVTK, and split its cells into tetrahedra";
 
-/// A format by how its files begin, after white space, or by the ending of their names; in any case
-/// of letters.
+/// A format by how its files begin, after white space, or by the endings of their names; in any
+/// case of letters, several with '|' between them.
 struct Foreign {
-  std::string_view sign;
+  std::string_view signs;
   const char* what;
   const char* advice;
 };
 constexpr std::array beginnings{
-    Foreign{"MFEM mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
-    Foreign{"MFEM NC mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
-    Foreign{"*HEADING", "Abaqus input", by_meshio},
-    Foreign{"*NODE", "Abaqus input", by_meshio},
-    Foreign{"*PART", "Abaqus input", by_meshio},
-    Foreign{"**", "Abaqus input", by_meshio},
-    Foreign{"CDF\x01", "Exodus or netCDF", by_meshio_netcdf},
-    Foreign{"CDF\x02", "Exodus or netCDF", by_meshio_netcdf},
-    Foreign{"CDF\x05", "Exodus or netCDF", by_meshio_netcdf},
+    Foreign{"MFEM mesh|MFEM NC mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
+    Foreign{"*HEADING|*NODE|*PART|**", "Abaqus input", by_meshio},
+    Foreign{"CDF\x01|CDF\x02|CDF\x05", "Exodus or netCDF", by_meshio_netcdf},
     Foreign{"@(#)ADF Database", "CGNS (ADF)", by_paraview},
     Foreign{"OFF\n", "OFF", by_meshio},
     Foreign{"mesh3d", "Netgen", by_meshio},
-    Foreign{"BEGIN BULK", "Nastran", by_meshio},
-    Foreign{"CEND", "Nastran", by_meshio},
-    Foreign{"GRID", "Nastran", by_meshio},
-    Foreign{"$ Nastran", "Nastran", by_meshio},
-    Foreign{"(0 ", "Fluent", by_paraview},
-    Foreign{"(2 ", "Fluent", by_paraview},
+    Foreign{"BEGIN BULK|CEND|GRID|$ Nastran", "Nastran", by_meshio},
+    Foreign{"(0 |(2 ", "Fluent", by_paraview},
     Foreign{"CONTROL INFO", "Gambit", by_gmsh},
-    Foreign{"TITLE", "Tecplot", by_meshio},
-    Foreign{"VARIABLES", "Tecplot", by_meshio},
+    Foreign{"TITLE|VARIABLES", "Tecplot", by_meshio},
     Foreign{"PK\x03\x04", "a zip archive", "; unpack it first"},
     Foreign{"\x1f\x8b", "compressed by gzip", "; unpack it first, as with gunzip"},
     Foreign{"version https://git-lfs", "a pointer of Git LFS", "; fetch it by git lfs pull"},
 };
 
+constexpr const char* free_fem =
+    "; FreeFEM's own are those of 2D: save it as .mesh first, by savemesh(Th, \"th.mesh\")";
 constexpr std::array endings{
     Foreign{".inp", "AVS UCD", by_meshio_avs},
     Foreign{".avs", "AVS UCD", by_meshio},
-    Foreign{".med", "MED (Salome)", by_meshio_hdf},
-    Foreign{".rmed", "MED (Salome)", by_meshio_hdf},
-    Foreign{".e", "Exodus", by_meshio_netcdf},
-    Foreign{".ex2", "Exodus", by_meshio_netcdf},
-    Foreign{".exo", "Exodus", by_meshio_netcdf},
-    Foreign{".exii", "Exodus", by_meshio_netcdf},
+    Foreign{".med|.rmed", "MED (Salome)", by_meshio_hdf},
+    Foreign{".e|.ex2|.exo|.exii", "Exodus", by_meshio_netcdf},
     Foreign{".cgns", "CGNS", by_paraview},
-    Foreign{".xdmf", "XDMF", by_meshio_hdf},
-    Foreign{".xmf", "XDMF", by_meshio_hdf},
-    Foreign{".h5", "HDF5", by_paraview},
-    Foreign{".hdf5", "HDF5", by_paraview},
+    Foreign{".xdmf|.xmf", "XDMF", by_meshio_hdf},
+    Foreign{".h5|.hdf5", "HDF5", by_paraview},
     Foreign{".h5m", "MOAB", by_meshio_hdf},
     Foreign{".vtkhdf", "VTKHDF", by_paraview},
     Foreign{".foam", "OpenFOAM", by_foam},
     Foreign{".off", "OFF", by_meshio},
-    Foreign{".bdf", "Nastran", by_meshio},
-    Foreign{".nas", "Nastran", by_meshio},
-    Foreign{".fem", "Nastran", by_meshio},
+    Foreign{".bdf|.nas|.fem", "Nastran", by_meshio},
     Foreign{".unv", "I-deas universal (UNV)", by_gmsh},
     Foreign{".neu", "Gambit", by_gmsh},
     Foreign{".cas", "Fluent", by_paraview},
     Foreign{".cdb", "Ansys", by_gmsh},
     Foreign{".vol", "Netgen", by_meshio},
-    Foreign{".node", "TetGen", by_meshio},
-    Foreign{".ele", "TetGen", by_meshio},
+    Foreign{".node|.ele", "TetGen", by_meshio},
     Foreign{".ugrid", "UGRID", by_meshio},
     Foreign{".mdpa", "Kratos", by_meshio},
-    Foreign{
-        ".msh", "a .msh that is not Gmsh's",
-        "; FreeFEM's own are those of 2D: save it as .mesh first, by savemesh(Th, \"th.mesh\")"},
-    Foreign{".step", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
-    Foreign{".stp", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
-    Foreign{".brep", "a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
-    Foreign{".geo", "Gmsh's script", "; mesh it first, as with gmsh -3 FILE"},
+    Foreign{".msh", "a .msh that is not Gmsh's", free_fem},
+    Foreign{".step|.stp", "STEP, a shape without a mesh", by_meshing},
+    Foreign{".brep", "a shape without a mesh", by_meshing},
+    Foreign{".geo", "Gmsh's script", by_meshing},
 };
+
+/// Calls visit(sign) for each sign of a format.
+void each_sign(const Foreign& one, auto&& visit) {
+  for (std::string_view rest = one.signs; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('|'), rest.size());
+    visit(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+}
 
 [[noreturn]] void refuse(const FileBytes& bytes, std::string_view what, std::string advice) {
   // With the name, the advice is a command that can be copied.
@@ -119,11 +108,7 @@ void refuse_hdf5(const FileBytes& bytes, std::string_view text) {
 }
 
 bool begins_as_gmf(std::string_view text) {
-  for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-    if (!text.starts_with('#')) break;
-    text.remove_prefix(std::min(text.find('\n'), text.size()));
-  }
+  text = from_first_word(text, '#');
   return lower(text.substr(0, 11)) == "meshversion" ||
          text.starts_with(std::string_view("\1\0\0\0", 4)) ||
          text.starts_with(std::string_view("\0\0\0\1", 4));
@@ -141,12 +126,15 @@ void refuse_foreign(const FileBytes& bytes) {
   if (head.find("FoamFile") != std::string_view::npos) refuse(bytes, "OpenFOAM", by_foam);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   for (const Foreign& one : beginnings)
-    if (lower(text.substr(0, one.sign.size())) == lower(one.sign))
-      refuse(bytes, one.what, one.advice);
+    each_sign(one, [&](std::string_view sign) {
+      if (lower(text.substr(0, sign.size())) == lower(sign)) refuse(bytes, one.what, one.advice);
+    });
   const std::string ending = lower(std::filesystem::path(bytes.name).extension().string());
   if (ending == ".inp" && text.starts_with('*')) refuse(bytes, "Abaqus input", by_meshio);
   for (const Foreign& one : endings)
-    if (ending == one.sign) refuse(bytes, one.what, one.advice);
+    each_sign(one, [&](std::string_view sign) {
+      if (ending == sign) refuse(bytes, one.what, one.advice);
+    });
 }
 
 }  // namespace ductile::meshadapt

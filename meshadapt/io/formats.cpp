@@ -9,58 +9,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MeshWithFields mesh_from_gmf(const FileBytes& bytes, Warnings* warnings) {
-  return {read_gmf(bytes, warnings), {}};
-}
-
-MeshWithFields mesh_from_su2(const FileBytes& bytes, Warnings* warnings) {
-  return {read_su2(bytes, warnings), {}};
-}
-
-/// The reader of a format with three coordinates.
-template <SpatialMesh (*Read)(const FileBytes&, Warnings*)>
-MeshWithFields mesh_from(const FileBytes& bytes, Warnings* warnings) {
-  return finish(Read(bytes, warnings), warnings);
-}
-
 // Ending, description, is read, is written, holds fields; detection, reader, writer. A file that no
 // format recognises is read by the first.
-constexpr std::array rows{
-    FormatRow{{".mesh", "Medit and Mmg (GMF), text", true, true, false},
-              nullptr,
-              mesh_from_gmf,
-              write_gmf},
-    FormatRow{{".meshb", "Medit and Mmg (GMF), binary", true, true, false},
-              nullptr,
-              mesh_from_gmf,
-              write_gmf},
-    FormatRow{{".msh", "Gmsh, versions 2.2 and 4.1", true, true, true},
-              is_msh,
-              mesh_from<read_msh>,
-              write_msh},
-    FormatRow{{".vtu", "VTK and ParaView, XML", true, true, true},
-              is_vtu,
-              mesh_from<read_vtu>,
-              write_vtu},
-    FormatRow{{".pvtu", "VTK and ParaView, pieces in files", true, false, true},
-              nullptr,
-              mesh_from<read_vtu>,
-              nullptr},
-    FormatRow{{".vtk", "VTK and ParaView, legacy", true, true, true},
-              is_vtk,
-              mesh_from<read_vtk>,
-              write_vtk},
-    FormatRow{
-        {".su2", "SU2, with markers by name", true, true, false}, is_su2, mesh_from_su2, write_su2},
-    FormatRow{
-        {".stl", "STL, surfaces in 3D", true, true, false}, is_stl, mesh_from<read_stl>, write_stl},
-    FormatRow{
-        {".ply", "PLY, surfaces in 3D", true, true, false}, is_ply, mesh_from<read_ply>, write_ply},
-    FormatRow{{".obj", "Wavefront OBJ, surfaces in 3D", true, true, false},
-              is_obj,
-              mesh_from<read_obj>,
-              write_obj},
-};
+constexpr std::array<FormatRow, 10> rows{
+    {{{".mesh", "Medit and Mmg (GMF), text", true, true}, nullptr, read_gmf, write_gmf},
+     {{".meshb", "Medit and Mmg (GMF), binary", true, true}, nullptr, read_gmf, write_gmf},
+     {{".msh", "Gmsh, versions 2.2 and 4.1", true, true, true}, is_msh, read_msh, write_msh},
+     {{".vtu", "VTK and ParaView, XML", true, true, true}, is_vtu, read_vtu, write_vtu},
+     {{".pvtu", "VTK and ParaView, pieces in files", true, false, true},
+      nullptr,
+      read_vtu,
+      nullptr},
+     {{".vtk", "VTK and ParaView, legacy", true, true, true}, is_vtk, read_vtk, write_vtk},
+     {{".su2", "SU2, with markers by name", true, true}, is_su2, read_su2, write_su2},
+     {{".stl", "STL, surfaces in 3D", true, true}, is_stl, read_stl, write_stl},
+     {{".ply", "PLY, surfaces in 3D", true, true}, is_ply, read_ply, write_ply},
+     {{".obj", "Wavefront OBJ, surfaces in 3D", true, true}, is_obj, read_obj, write_obj}}};
 
 const FormatRow* row_with(std::string_view ending) {
   const auto* const found = std::find_if(
@@ -125,6 +89,7 @@ void write_mesh(AtomicOutputs& outputs, const fs::path& path, const AnyMesh& mes
     throw InputError(path.string() + ": expected a name that ends in " + written_endings() +
                      ", found '" + ending + "'; choose another name");
   expect_fields_held(*row, path, options);
+  expect_fit_for_file(mesh, options.fields);
   WriteOptions in_format = options;
   in_format.format = row->ending;
   row->write(outputs, path, mesh, in_format);
