@@ -35,10 +35,6 @@ bool is_su2(std::string_view bytes);
 bool is_vtk(std::string_view bytes);
 bool is_vtu(std::string_view bytes);
 
-/// Throws InputError, naming the format and a conversion that works, if the file begins as one of a
-/// format that is known but not read, or its name ends so.
-void refuse_foreign(const FileBytes& bytes);
-
 // ---- Readers; they throw InputError ----
 
 MeshReader read_gmf;
