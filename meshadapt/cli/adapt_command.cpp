@@ -2,40 +2,23 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <new>
-#include <optional>
-#include <string>
-#include <utility>
 
 #include "adapt_job.hpp"
-#include "adapt_report.hpp"
-#include "carried_fields.hpp"
 #include "checks/faults.hpp"
 #include "command.hpp"
-#include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/runtime/process.hpp"
 #include "extents.hpp"
 #include "files.hpp"
 #include "mmg_options.hpp"
-#include "move_command.hpp"
 #include "progress_bar.hpp"
-#include "run_in_team.hpp"
-#include "system.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-namespace fs = std::filesystem;
-using meshadapt::AdaptedMesh;
-using meshadapt::AdaptOptions;
-using meshadapt::AnyField;
-using meshadapt::AnyMesh;
-using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
@@ -120,73 +103,44 @@ std::size_t memory_left(std::optional<std::size_t> given) {
 namespace {
 
 AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
-                                const AnyField& metric, const meshadapt::Sizes& sizes) {
+                                const AnyField& metric, const Sizes& sizes) {
   ProgressBar bar(job.verbosity > 0 && stderr_is_terminal());
-  AdaptOptions adapt = job.adapt;
-  adapt.memory_limit = memory_left(job.memory);
-  adapt.progress = [&bar](const meshadapt::AdaptProgress& progress) {
+  AdaptOptions options_of_job = job.adapt;
+  options_of_job.memory_limit = memory_left(job.memory);
+  options_of_job.progress = [&bar](const AdaptProgress& progress) {
     bar.show(progress);
     return true;
   };
-  return !job.places.any() ? meshadapt::adapt(executor, mesh, metric, adapt)
-                           : meshadapt::adapt_to_sizes(executor, mesh, sizes, adapt);
+  return !job.places.any() ? adapt(executor, mesh, metric, options_of_job)
+                           : adapt_to_sizes(executor, mesh, sizes, options_of_job);
 }
 
-void expect_right(const meshadapt::AdjacentMesh& before, const meshadapt::AdjacentMesh& after,
+void expect_right(const AdjacentMesh& before, const AdjacentMesh& after,
                   double hausdorff_tolerance) {
-  const auto faults = meshadapt::adapted_faults(before, after, hausdorff_tolerance);
+  const auto faults = adapted_faults(before, after, hausdorff_tolerance);
   if (!faults.empty())
-    throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
-                           "); nothing was written; please report this with its input");
+    throw Error("the adapted mesh is not valid (" + faults.front() +
+                "); nothing was written; please report this with its input");
 }
 
 std::string what_was_done(const Job& job, const AdaptInput& input, const AdaptSummary& summary) {
-  std::string text = input.cut ? to_text(*input.cut) : std::string(), written;
-  text += to_text(summary, job.verbosity > 1);
-  for (const fs::path& path : outputs_of(job))
-    written += (written.empty() ? "written: " : ", ") + path.string();
-  return text + meshadapt::printable(written);
+  return (input.cut ? to_text(*input.cut) : std::string()) + to_text(summary, job.verbosity > 1) +
+         written(job);
 }
 
-bool is_level_set(const Job& job, const meshadapt::NamedField& field) {
+bool is_level_set(const Job& job, const NamedField& field) {
   return job.level_set && job.level_set->values.value_or(field.name) == field.name;
 }
 
-void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
-                         meshadapt::Warnings& warnings) {
-  std::string names;
-  for (const meshadapt::NamedField& field : file.fields)
-    if (field.name != "metric" && !is_level_set(job, field))
-      names += (names.empty() ? "" : ", ") + field.name;
-  if (!names.empty() && job.fields.inputs().empty())
+void warn_of_fields_left(const Job& job, const MeshWithFields& file, Warnings& warnings) {
+  std::vector<std::string> left;
+  for (const NamedField& field : file.fields)
+    if (field.name != "metric" && !is_level_set(job, field)) left.push_back(field.name);
+  if (!left.empty() && job.fields.inputs().empty())
     warnings.push_back(
-        file.mesh.name + ": its fields are not carried: " + names +
+        file.mesh.name + ": its fields are not carried: " + listed(left) +
         "; --field takes those at the vertices of a file along, ductile transfer all");
 }
-
-}  // namespace
-
-/// Prints warnings, and takes the last memory, before files get their names.
-void write_outputs(const Job& job, const AdaptOutput& output, meshadapt::Warnings& warnings) {
-  meshadapt::AtomicOutputs outputs;
-  std::vector<meshadapt::NamedField> fields;
-  if (job.with_metric) fields = meshadapt::named_fields(output.metric, "metric");
-  fields.insert(fields.end(), output.fields.begin(), output.fields.end());
-  meshadapt::WriteOptions as_named;
-  if (holds_fields(job.output)) as_named.fields = fields;
-  as_named.warnings = &warnings;
-  const std::string ending = job.output.extension().string();
-  as_named.format = ending;
-  meshadapt::write_mesh(outputs, place_of(job.output), output.mesh, as_named);
-  if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, output.metric);
-  job.fields.write(outputs, output.mesh, output.fields, output.field_count_of);
-  if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, output.mesh, {.fields = fields});
-  print_warnings(warnings, job.verbosity);
-  if (job.json) put_json(outputs, *job.json, output.json);
-  outputs.commit();
-}
-
-namespace {
 
 /// How far curved boundaries are from where they were. If memory runs out here, that is not told,
 /// because the mesh itself is there.
@@ -195,19 +149,18 @@ std::optional<double> distance_from(const Executor& executor, const AnyMesh& bef
   try {
     if (make.geometry) return distance_to(executor, after, *make.geometry);
     return distance_to(executor, after,
-                       meshadapt::Geometry(executor, before,
-                                           {.tolerance = make.hausdorff_tolerance,
-                                            .ridge_angle = make.ridge_angle,
-                                            .complete_boundary = make.complete_boundary,
-                                            .functions = make.functions}));
+                       Geometry(executor, before,
+                                {.tolerance = make.hausdorff_tolerance,
+                                 .ridge_angle = make.ridge_angle,
+                                 .complete_boundary = make.complete_boundary,
+                                 .functions = make.functions}));
   } catch (const std::bad_alloc&) {
     return std::nullopt;
   }
 }
 
-AdaptSummary summary_of(const Job& job, const AdaptInput& input,
-                        const meshadapt::AdjacentMesh& before, const AdaptedMesh& adapted,
-                        const meshadapt::AdjacentMesh& after) {
+AdaptSummary summary_of(const Job& job, const AdaptInput& input, const AdjacentMesh& before,
+                        const AdaptedMesh& adapted, const AdjacentMesh& after) {
   const MakeMeshOptions& make = job.adapt.make;
   const double tolerance = make.lock_boundary ? 0 : make.hausdorff_tolerance;
   const bool tells = job.json || job.verbosity > 0;
@@ -229,14 +182,14 @@ AdaptSummary summary_of(const Job& job, const AdaptInput& input,
 int work(const Executor& executor, Job job) {
   const auto begin = std::chrono::steady_clock::now();
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
-  meshadapt::Warnings warnings;
+  Warnings warnings;
   const AdaptInput input = read_input(executor, job, warnings);
   const AnyMesh& mesh = input.file.mesh;
   warn_of_fields_left(job, input.file, warnings);
   job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, input.metric, input.sizes);
-  const meshadapt::AdjacentMesh before(executor, mesh), after(executor, adapted.mesh);
+  const AdjacentMesh before(executor, mesh), after(executor, adapted.mesh);
   if (!adapted.report.checked) expect_right(before, after, job.adapt.make.hausdorff_tolerance);
   adapted.mesh.name = job.output.string();
   const auto carried =
@@ -244,16 +197,14 @@ int work(const Executor& executor, Job job) {
   const AdaptSummary summary = summary_of(job, input, before, adapted, after);
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, input, summary) : std::string();
-  write_outputs(
-      job,
-      {adapted.mesh, adapted.metric, carried, input.fields.count_of,
-       job.json ? to_json(summary, input.cut ? to_json(*input.cut) : "null") : std::string()},
-      warnings);
+  write_outputs(job,
+                {adapted.mesh, adapted.metric, carried, input.fields.count_of,
+                 [&] { return to_json(summary, input.cut ? to_json(*input.cut) : Json()); }},
+                warnings);
   // From here on no memory is taken, because the outputs are there.
-  const bool taken = is_standard_output(job.output) || job.json == standard_output;
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
   if (!said.empty())
-    std::fprintf(taken ? stderr : stdout, "%s (%.2f s in all)\n", said.c_str(), passed.count());
+    std::fprintf(messages_of(job), "%s (%.2f s in all)\n", said.c_str(), passed.count());
   return done;
 }
 

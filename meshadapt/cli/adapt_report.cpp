@@ -1,90 +1,53 @@
 #include "adapt_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <utility>
-#include <vector>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/process.hpp"
-#include "files.hpp"
+#include "mesh/array_lengths.hpp"
 #include "metric/measure.hpp"
-#include "report.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-using meshadapt::AdaptReport;
-using meshadapt::AnyMesh;
-using meshadapt::KernelReport;
-
-/// False of a surface, and in the plane.
-bool has_tetrahedra(const MeshSummary& mesh) {
-  return mesh.dimension == 3 && (mesh.tetrahedra > 0 || mesh.triangles == 0);
-}
-
-std::string counts(const MeshSummary& mesh) {
-  std::string text = mesh.name + ": " + counted(mesh.vertices, "vertex", "vertices") + ", " +
-                     counted(mesh.triangles, "triangle", "triangles");
-  if (has_tetrahedra(mesh)) text += ", " + counted(mesh.tetrahedra, "tetrahedron", "tetrahedra");
+std::string counts(const AnyMesh& mesh) {
+  std::string text = mesh.name + ": " + counted(mesh.vertex_count(), "vertex", "vertices") + ", " +
+                     counted(mesh.triangles.size(), "triangle", "triangles");
+  if (element_dimension(mesh) == 3)
+    text += ", " + counted(mesh.tetrahedra.size(), "tetrahedron", "tetrahedra");
   return text + "\n";
 }
 
-std::size_t element_count(const MeshSummary& mesh) {
-  return has_tetrahedra(mesh) ? mesh.tetrahedra : mesh.triangles;
-}
-
 /// About how many elements the metric asks for; 0 if it was not measured.
-std::size_t elements_wanted(const MeshSummary& mesh) {
-  if (!mesh.statistics || !mesh.statistics->in_metric) return 0;
-  const double each = meshadapt::complexity_of_elements(has_tetrahedra(mesh) ? 3 : 2, 1);
-  return static_cast<std::size_t>(std::lround(std::min(mesh.statistics->complexity / each, 1e18)));
+std::size_t elements_wanted(const MeasuredMesh& measured) {
+  if (!measured.statistics || !measured.statistics->in_metric) return 0;
+  const double each = complexity_of_elements(element_dimension(measured.mesh), 1);
+  return static_cast<std::size_t>(
+      std::lround(std::min(measured.statistics->complexity / each, 1e18)));
 }
 
 /// "metric: part.sol (found beside the mesh); -hmax 0.1, -hgrad 1.3".
 std::string in_words(const MetricInForce& in_force) {
-  std::string text = "metric: " + in_force.source;
-  for (const auto& [option, value] : in_force.values) {
-    std::array<char, 64> words;
-    std::snprintf(words.data(), words.size(), " -%s %g", option.c_str(), value);
-    text += (&option == &in_force.values[0].option ? ";" : ",") + std::string(words.data());
-  }
-  return meshadapt::printable(text) + "\n";
+  const std::string options = listed(
+      in_force.values, [](const auto& one) { return format("-%s %g", one.first, one.second); });
+  return printable("metric: " + in_force.source + (options.empty() ? "" : "; ") + options) + "\n";
 }
 
-std::string demand_in_words(const MeshSummary& mesh) {
-  const std::size_t wanted = elements_wanted(mesh);
+std::string demand_in_words(const MeasuredMesh& measured) {
+  const std::size_t wanted = elements_wanted(measured);
   if (wanted == 0) return {};
   return "  the metric asks for about " + with_commas(wanted) + " elements, the mesh has " +
-         with_commas(element_count(mesh)) + "\n";
+         with_commas(element_count(measured.mesh)) + "\n";
 }
 
-std::string json_of(const MetricInForce& in_force) {
-  std::string options;
+Json to_json(const MetricInForce& in_force) {
+  std::vector<Json> options;
   for (const auto& [option, value] : in_force.values)
-    options += (options.empty() ? "" : ", ") + json_string(option) + ": " + json_number(value);
-  return "{\"source\": " + json_string(in_force.source) + ", \"options\": {" + options + "}}";
-}
-
-std::string seconds(double s) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2f s", s);
-  return text.data();
-}
-
-/// The two lines of figures that sum up a mesh.
-std::string short_figures(const meshadapt::MeshStatistics& s) {
-  std::array<char, 256> text;
-  std::snprintf(text.data(), text.size(),
-                "  %.2f %% of %s edges in [0.71, 1.41], shortest %.3g, longest %.3g\n"
-                "  quality: mean %.3f, 1 %% below %.3f, worst %.3g\n",
-                100 * s.share_in_range(), with_commas(s.edge_length.count).c_str(),
-                s.edge_length.min, s.edge_length.max, s.quality.mean, s.quality.low, s.quality.min);
-  return text.data();
+    options.insert(options.end(), {option, value});
+  return json_object("source", in_force.source, "options", json_object(options));
 }
 
 /// A line about edges that required entities keep too long or too short; empty without such edges.
@@ -97,131 +60,87 @@ std::string held_edges(const AdaptReport& report) {
 /// "  boundary: 312 edges of ridges, within 0.043 of where it was (-hausd 0.05)".
 std::string boundary_in_words(const AdaptSummary& summary) {
   std::string text =
-      "  boundary: " + (summary.after.dimension == 2
+      "  boundary: " + (summary.after.mesh.dimension == 2
                             ? counted(summary.ridges, "corner", "corners")
                             : counted(summary.ridges, "edge of ridges", "edges of ridges"));
-  if (summary.distance) {
-    std::array<char, 64> words;
-    std::snprintf(words.data(), words.size(), ", within %.3g of where it was", *summary.distance);
-    text += words.data();
-  }
+  if (summary.distance) text += format(", within %.3g of where it was", *summary.distance);
   return text + "\n";
 }
 
-std::string figures(const MeshSummary& mesh, bool with_histograms) {
-  if (!mesh.statistics) return {};
-  return with_histograms ? to_text(*mesh.statistics) : short_figures(*mesh.statistics);
+std::string figures(const MeasuredMesh& measured, bool with_histograms) {
+  if (!measured.statistics) return {};
+  const MeshStatistics& s = *measured.statistics;
+  if (with_histograms) return to_text(s);
+  return format(
+      "  %.2f %% of %s edges in [0.71, 1.41], shortest %.3g, longest %.3g\n"
+      "  quality: mean %.3f, 1 %% below %.3f, worst %.3g\n",
+      100 * s.share_in_range(), with_commas(s.edge_length.count).c_str(), s.edge_length.min,
+      s.edge_length.max, s.quality.mean, s.quality.low, s.quality.min);
 }
 
-std::string json_of(const KernelReport& kernel) {
-  return "{\"seconds\": " + json_number(kernel.seconds) +
-         ", \"considered\": " + std::to_string(kernel.considered) +
-         ", \"applied\": " + std::to_string(kernel.applied) +
-         ", \"rounds\": " + std::to_string(kernel.rounds) + "}";
+Json to_json(const KernelReport& kernel) {
+  return json_object("seconds", kernel.seconds, "considered", kernel.considered, "applied",
+                     kernel.applied, "rounds", kernel.rounds);
 }
 
-double share_of_edges(const meshadapt::MeshStatistics& statistics, std::size_t count) {
-  return static_cast<double>(count) /
-         static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
-}
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
-
-constexpr double many_short = 0.1;
-
-/// Advice for a mesh that is far from its metric; otherwise empty.
-std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
-  constexpr double many = 0.25;
-  const double share = share_of_edges(statistics, statistics.edges_long);
-  if (share < many) return {};
-  return percent(share) +
-         " of the edges are longer than asked for: the metric is too far from the mesh; adapt the"
-         " result again, or first to a metric whose sizes differ less between directions"
-         " (ductile metric bound --anisotropy)";
-}
-
-/// Advice for a mesh that fixed vertices keep finer than its metric; otherwise empty.
-std::string advice_on_surface(const meshadapt::MeshStatistics& statistics,
-                              const AdaptReport& report) {
-  constexpr std::size_t more_than_corners = 32;
-  const double share = share_of_edges(statistics, statistics.edges_short);
-  if (share < many_short || report.fixed_vertices < more_than_corners) return {};
-  return percent(share) +
-         " of the edges are shorter than asked for; if they are on curved boundaries, -hausd X"
-         " lets these be up to X from where they are";
-}
-
-/// Advice for a mesh that the tolerance of curved boundaries keeps finer than its metric, which
-/// shows in a larger share of short edges on them; otherwise empty.
-std::string advice_on_tolerance(const meshadapt::MeshStatistics& statistics,
-                                const AdaptReport& report, double tolerance) {
-  constexpr std::size_t more_than_few = 32;
-  constexpr double in_part = 0.25;
-  const double share = share_of_edges(statistics, statistics.edges_short);
-  const auto here = static_cast<double>(report.curved_edges_short);
-  if (share < many_short || report.curved_edges_short < more_than_few ||
-      here < in_part * static_cast<double>(statistics.edges_short) ||
-      here < share * static_cast<double>(report.curved_edges))
-    return {};
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%g", tolerance);
-  return percent(share) +
-         " of the edges are shorter than asked for: curved boundaries have to stay within " +
-         text.data() +
-         " (-hausd) of where they were; a larger one would help, and -hgrad X lets"
-         " sizes grow gently from there";
-}
-
-/// Advice for a mesh with many corners, which too small an angle of ridges makes; otherwise empty.
-std::string advice_on_ridges(const meshadapt::MeshStatistics& statistics, const AdaptReport& report,
-                             std::size_t vertices) {
-  constexpr std::size_t in_part = 4;
-  const double share = share_of_edges(statistics, statistics.edges_short);
-  if (share < many_short || report.fixed_vertices * in_part < vertices) return {};
-  return percent(share) +
-         " of the edges are shorter than asked for: " + std::to_string(report.fixed_vertices) +
-         " vertices are corners of the boundary or required, and stay; with a larger angle -ar"
-         " fewer of a curved one are";
-}
-
-/// All advice about lengths.
-std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
-                                const meshadapt::AdaptedMesh& after,
+/// Advice for a mesh that is far from its metric: edges are long because it is too far from the
+/// input, or short because of fixed vertices, the tolerance of curved boundaries (which shows in a
+/// larger share of short edges on them), or corners that too small an angle of ridges makes.
+std::vector<std::string> advice(const MeshStatistics& statistics, const AdaptedMesh& after,
                                 const SummaryOptions& options) {
+  constexpr double many_long = 0.25, many_short = 0.1, in_part = 0.25;
+  constexpr std::size_t more_than_few = 32;
   const AdaptReport& report = after.report;
-  std::vector<std::string> all{advice_on_lengths(statistics)};
-  if (options.keeps_surface) all.push_back(advice_on_surface(statistics, report));
-  if (options.hausdorff_tolerance > 0) {
-    all.push_back(advice_on_tolerance(statistics, report, options.hausdorff_tolerance));
-    all.push_back(advice_on_ridges(statistics, report, after.mesh.vertex_count()));
-  }
-  std::erase(all, "");
+  const auto share_of = [&](std::size_t count) {
+    return static_cast<double>(count) /
+           static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
+  };
+  std::vector<std::string> all;
+  const auto say = [&](bool applies, double share, const std::string& text) {
+    if (applies)
+      all.push_back(std::to_string(std::lround(100 * share)) + " % of the edges are " + text);
+  };
+  const double longer = share_of(statistics.edges_long), shorter = share_of(statistics.edges_short);
+  say(longer >= many_long, longer,
+      "longer than asked for: the metric is too far from the mesh; adapt the result again, or first"
+      " to a metric whose sizes differ less between directions (ductile metric bound "
+      "--anisotropy)");
+  if (shorter < many_short) return all;
+  say(options.keeps_surface && report.fixed_vertices >= more_than_few, shorter,
+      "shorter than asked for; if they are on curved boundaries, -hausd X lets these be up to X "
+      "from"
+      " where they are");
+  if (options.hausdorff_tolerance == 0) return all;
+  const auto here = static_cast<double>(report.curved_edges_short);
+  say(report.curved_edges_short >= more_than_few &&
+          here >= in_part * static_cast<double>(statistics.edges_short) &&
+          here >= shorter * static_cast<double>(report.curved_edges),
+      shorter,
+      format("shorter than asked for: curved boundaries have to stay within %g (-hausd) of where"
+             " they were; a larger one would help, and -hgrad X lets sizes grow gently from there",
+             options.hausdorff_tolerance));
+  say(report.fixed_vertices * 4 >= after.mesh.vertex_count(), shorter,
+      "shorter than asked for: " + std::to_string(report.fixed_vertices) +
+          " vertices are corners of the boundary or required, and stay; with a larger angle -ar"
+          " fewer of a curved one are");
   return all;
 }
 
 }  // namespace
 
-MeshSummary summarise_mesh(const AnyMesh& mesh) {
-  return {mesh.name,         mesh.dimension,        mesh.vertex_count(),
-          mesh.edges.size(), mesh.triangles.size(), mesh.tetrahedra.size(),
-          std::nullopt};
+Json to_json(const MeasuredMesh& measured) {
+  const AnyMesh& mesh = measured.mesh;
+  return json_object("file", mesh.name, "dimension", mesh.dimension, "vertices",
+                     mesh.vertex_count(), "edges", mesh.edges.size(), "triangles",
+                     mesh.triangles.size(), "tetrahedra", mesh.tetrahedra.size(), "statistics",
+                     measured.statistics ? to_json(*measured.statistics) : Json());
 }
 
-std::string to_json(const MeshSummary& mesh) {
-  return "{\"file\": " + json_string(mesh.name) +
-         ", \"dimension\": " + std::to_string(mesh.dimension) +
-         ", \"vertices\": " + std::to_string(mesh.vertices) +
-         ", \"edges\": " + std::to_string(mesh.edges) +
-         ", \"triangles\": " + std::to_string(mesh.triangles) +
-         ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra) +
-         ", \"statistics\": " + (mesh.statistics ? to_json(*mesh.statistics) : "null") + "}";
-}
-
-AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::AnyField& metric,
-                       const meshadapt::AdaptedMesh& adapted, const meshadapt::AdjacentMesh& after,
+AdaptSummary summarise(const AdjacentMesh& before, const AnyField& metric,
+                       const AdaptedMesh& adapted, const AdjacentMesh& after,
                        const SummaryOptions& options) {
-  AdaptSummary summary{.before = summarise_mesh(before.mesh()),
-                       .after = summarise_mesh(after.mesh()),
+  AdaptSummary summary{.before = {before.mesh()},
+                       .after = {after.mesh()},
                        .in_force = options.in_force,
                        .report = adapted.report,
                        .threads = after.executor().threads(),
@@ -237,48 +156,42 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
 
 std::string to_text(const AdaptSummary& summary, bool with_histograms) {
   const AdaptReport& report = summary.report;
-  std::string text = counts(summary.before) + figures(summary.before, with_histograms);
+  std::string text = counts(summary.before.mesh) + figures(summary.before, with_histograms);
   if (!summary.in_force.source.empty()) text += in_words(summary.in_force);
-  text += "adapted in " + seconds(report.total_seconds) + " on " +
+  text += format("adapted in %.2f s on ", report.total_seconds) +
           counted(static_cast<std::size_t>(summary.threads), "thread", "threads") + ", " +
           counted(static_cast<std::size_t>(report.iterations), "iteration", "iterations") +
           (report.converged ? "" : " (the most allowed; more may help: --iterations)") +
           ", peak memory " + with_commas(summary.peak_memory >> 20U) + " MB\n ";
-  for (const auto& [name, kernel] : meshadapt::kernels)
-    text += " " + std::string(name) + " " + seconds((report.*kernel).seconds) + ",";
-  text += " set-up " + seconds(report.setup_seconds) + ", renumbering " +
-          seconds(report.renumber_seconds) + "\n";
-  return text + counts(summary.after) + demand_in_words(summary.after) +
+  for (const auto& [name, kernel] : kernels)
+    text += " " + std::string(name) + format(" %.2f s,", (report.*kernel).seconds);
+  text +=
+      format(" set-up %.2f s, renumbering %.2f s\n", report.setup_seconds, report.renumber_seconds);
+  return text + counts(summary.after.mesh) + demand_in_words(summary.after) +
          figures(summary.after, with_histograms) + boundary_in_words(summary) + held_edges(report);
 }
 
-std::string to_json(const AdaptSummary& summary, const std::string& cut) {
+Json to_json(const AdaptSummary& summary, const Json& cut) {
   const AdaptReport& report = summary.report;
-  std::string kernel_list, warnings;
-  for (const auto& [name, kernel] : meshadapt::kernels)
-    kernel_list +=
-        (kernel_list.empty() ? "" : ", ") + json_string(name) + ": " + json_of(report.*kernel);
-  for (const std::string& warning : report.warnings)
-    warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
-  return "{\"before\": " + to_json(summary.before) + ",\n \"after\": " + to_json(summary.after) +
-         ",\n \"cut\": " + cut + ",\n \"metric\": " + json_of(summary.in_force) +
-         ", \"elements_wanted\": " + std::to_string(elements_wanted(summary.after)) +
-         ", \"elements\": " + std::to_string(element_count(summary.after)) +
-         ", \"ridges\": " + std::to_string(summary.ridges) +
-         ", \"distance\": " + (summary.distance ? json_number(*summary.distance) : "null") +
-         ",\n \"threads\": " + std::to_string(summary.threads) +
-         ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
-         ", \"instructions\": " + json_string(std::string(report.instructions)) +
-         ", \"iterations\": " + std::to_string(report.iterations) +
-         ", \"converged\": " + (report.converged ? "true" : "false") +
-         ", \"held_long_edges\": " + std::to_string(report.held_long_edges) +
-         ", \"held_short_edges\": " + std::to_string(report.held_short_edges) +
-         ",\n \"kernels\": {" + kernel_list +
-         "},\n \"seconds\": {\"total\": " + json_number(report.total_seconds) +
-         ", \"setup\": " + json_number(report.setup_seconds) +
-         ", \"renumber\": " + json_number(report.renumber_seconds) +
-         "},\n \"peak_memory_bytes\": " + std::to_string(summary.peak_memory) +
-         ",\n \"warnings\": [" + warnings + "]}\n";
+  std::vector<Json> kernel_list;
+  for (const auto& [name, kernel] : kernels)
+    kernel_list.insert(kernel_list.end(), {name, to_json(report.*kernel)});
+  return json_lines(
+      {json_object("before", to_json(summary.before)), json_object("after", to_json(summary.after)),
+       json_object("cut", cut),
+       json_object("metric", to_json(summary.in_force), "elements_wanted",
+                   elements_wanted(summary.after), "elements", element_count(summary.after.mesh),
+                   "ridges", summary.ridges, "distance", summary.distance),
+       json_object("threads", summary.threads, "deterministic", summary.deterministic,
+                   "instructions", report.instructions, "iterations", report.iterations,
+                   "converged", report.converged, "held_long_edges", report.held_long_edges,
+                   "held_short_edges", report.held_short_edges),
+       json_object("kernels", json_object(kernel_list)),
+       json_object("seconds",
+                   json_object("total", report.total_seconds, "setup", report.setup_seconds,
+                               "renumber", report.renumber_seconds)),
+       json_object("peak_memory_bytes", summary.peak_memory),
+       json_object("warnings", json_list({report.warnings.begin(), report.warnings.end()}))});
 }
 
 }  // namespace ductile::cli

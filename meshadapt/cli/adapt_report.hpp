@@ -4,40 +4,32 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/statistics.hpp"
 #include "mesh/adjacency.hpp"
+#include "report.hpp"
 
 namespace ductile::cli {
 
-struct MeshSummary {
-  std::string name;
-  int dimension = 0;
-  std::size_t vertices = 0, edges = 0, triangles = 0, tetrahedra = 0;
-  std::optional<meshadapt::MeshStatistics> statistics;
+struct MeasuredMesh {
+  const AnyMesh& mesh;
+  std::optional<MeshStatistics> statistics{};
 };
+Json to_json(const MeasuredMesh& measured);
 
-/// The counts of a mesh; statistics are left out.
-MeshSummary summarise_mesh(const meshadapt::AnyMesh& mesh);
-std::string to_json(const MeshSummary& mesh);
-
-/// An option with a number: "hmin", 0.1.
-struct ValueInForce {
-  std::string option;
-  double value = 0;
-};
-
+/// The metric that a mesh is adapted to.
 struct MetricInForce {
-  std::string source;  ///< "part.sol (found beside the mesh)"
-  std::vector<ValueInForce> values;
+  std::string source;                                  ///< "part.sol (found beside the mesh)"
+  std::vector<std::pair<const char*, double>> values;  ///< options about sizes: "hmin", 0.1
 };
 
+/// The meshes before and after must outlive it.
 struct AdaptSummary {
-  MeshSummary before, after;
+  MeasuredMesh before, after;
   MetricInForce in_force;
-  meshadapt::AdaptReport report;
+  AdaptReport report;
   int threads = 0;
   bool deterministic = true;
   std::size_t peak_memory = 0;
@@ -55,12 +47,12 @@ struct SummaryOptions {
 };
 
 /// `after` is the mesh of `adapted`.
-AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::AnyField& metric,
-                       const meshadapt::AdaptedMesh& adapted, const meshadapt::AdjacentMesh& after,
+AdaptSummary summarise(const AdjacentMesh& before, const AnyField& metric,
+                       const AdaptedMesh& adapted, const AdjacentMesh& after,
                        const SummaryOptions& options);
 
 std::string to_text(const AdaptSummary& summary, bool with_histograms);
 /// `cut` is the object about a level set, or null.
-std::string to_json(const AdaptSummary& summary, const std::string& cut = "null");
+Json to_json(const AdaptSummary& summary, const Json& cut);
 
 }  // namespace ductile::cli

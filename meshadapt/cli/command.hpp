@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "arguments.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "mmg_options.hpp"
+#include "system.hpp"
 
 namespace ductile::cli {
 
@@ -14,10 +16,10 @@ namespace ductile::cli {
 inline constexpr int done = 0, failed = 1, misused = 2;
 
 struct Command {
-  std::string_view name;
-  std::string_view operands;  ///< as in "MESH [-o OUT]"
-  std::string_view summary;   ///< one line, a sentence without its full stop
-  std::string_view details;   ///< further lines
+  const char* name;
+  const char* operands;  ///< as in "MESH [-o OUT]"
+  const char* summary;   ///< one line, a sentence without its full stop
+  const char* details;   ///< further lines; may be empty
   std::span<const Option> options;
   int (*run)(const Arguments& arguments);  ///< returns the exit status; throws Error
   /// The advice for an option, without dashes, that the command does not have; may be empty.
@@ -27,12 +29,35 @@ struct Command {
 extern const Command adapt_command, info_command, metric_command, move_command, transfer_command,
     view_command, convert_command;
 
+/// The values of --threads, 0 for as many as there are cores, and of -v. Throw UsageError.
+inline int threads_of(const Arguments& arguments) {
+  return arguments.integer("--threads", 1, 4096).value_or(0);
+}
+inline int verbosity_of(const Arguments& arguments) {
+  return arguments.integer("-v", -1, 10).value_or(1);
+}
+
+/// Runs the long part of a command and returns its exit status, body(executor). The executor's
+/// threads are a team meanwhile (runtime::with_team), so that idle ones soon sleep, and reuse
+/// memory.
+template <class Body>
+int run_in_team(const runtime::ExecutorOptions& options, Body&& body) {
+  const runtime::Executor executor(options);
+  reuse_memory(executor.threads());
+  int status = failed;
+  runtime::with_team(executor, [&] { status = body(executor); });
+  return status;
+}
+
+/// Runs `adapt` with -lag. Throws UsageError for options that do not go with it.
+int run_lag(const Arguments& arguments);
+
 /// A program with commands.
 struct Program {
-  std::string_view name;                     ///< as messages begin
-  std::string_view summary;                  ///< a sentence without its subject and full stop
+  const char* name;                          ///< as messages begin
+  const char* summary;                       ///< a sentence without its subject and full stop
   std::span<const Command* const> commands;  ///< in the order of help
-  std::string_view launcher{};               ///< what starts it, for help, with a space at its end
+  const char* launcher = "";                 ///< what starts it, for help, with a space at its end
   bool speaks = true;  ///< prints help and errors; of several processes only one does
 };
 

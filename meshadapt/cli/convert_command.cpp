@@ -5,14 +5,11 @@
 
 #include "command.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "files.hpp"
 
 namespace ductile::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array<Option, 4> options{{
     {"-sol", "FIELD", "for formats that hold fields: those at the vertices to take along"},
@@ -22,15 +19,11 @@ constexpr std::array<Option, 4> options{{
     {"--join", "X", "makes one of vertices that are at most X from each other; 0: at one place"},
 }};
 
-bool holds_field(const fs::path& path) {
-  return path.extension() == ".sol" || path.extension() == ".solb";
-}
 bool is_gmf(const fs::path& path) {
   return holds_field(path) || path.extension() == ".mesh" || path.extension() == ".meshb";
 }
 
-void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
-                    meshadapt::Warnings& warnings) {
+void warn_of_fields(const MeshWithFields& file, const fs::path& to, Warnings& warnings) {
   if (!file.fields.empty())
     warnings.push_back(to.string() + ": holds no fields, those of " + file.mesh.name +
                        " are left out: " + names_of(file.fields) +
@@ -38,11 +31,10 @@ void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
 }
 
 void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,
-                  meshadapt::WriteOptions form, meshadapt::Warnings& warnings) {
-  meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(from, &warnings);
+                  WriteOptions form, Warnings& warnings) {
+  MeshWithFields file = read_mesh_with_fields(from, &warnings);
   if (const auto path = arguments.text("-sol"))
-    for (auto& field : meshadapt::named_fields(read_fields(*path, file.mesh, warnings),
-                                               as_utf8(fs::path(*path).stem().string())))
+    for (auto& field : at_vertices(read_named_fields(*path, file.mesh, warnings), *path))
       file.fields.push_back(std::move(field));
   if (const auto distance = join_option(arguments))
     keep_at(join(file.mesh, *distance, warnings), file.fields, file.mesh.dimension);
@@ -52,7 +44,7 @@ void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arg
     warn_of_fields(file, to, warnings);
   const std::string ending = to.extension().string();
   form.format = ending;
-  meshadapt::write_mesh(place_of(to), file.mesh, form);
+  write_mesh(place_of(to), file.mesh, form);
 }
 
 /// Throws UsageError unless the output can hold the input: a field goes to a field, a mesh to a
@@ -63,13 +55,13 @@ void expect_names(const fs::path& from, const fs::path& to) {
     throw UsageError(to.string() +
                      ": expected a name ending in .sol or .solb, as the input is a field");
   if (holds_field(to))
-    throw UsageError(to.string() + ": expected a name ending in " + meshadapt::written_endings() +
+    throw UsageError(to.string() + ": expected a name ending in " + written_endings() +
                      ", as the input is a mesh");
   expect_mesh_name(to);
 }
 
-meshadapt::WriteOptions form_of(const Arguments& arguments, const fs::path& to) {
-  meshadapt::WriteOptions form;
+WriteOptions form_of(const Arguments& arguments, const fs::path& to) {
+  WriteOptions form;
   form.version = arguments.integer("--version-of-file", 1, 4).value_or(0);
   const bool is_msh = to.extension() == ".msh", is_vtk = to.extension() == ".vtk";
   if (form.version != 0 && !is_gmf(to) && !is_msh)
@@ -79,12 +71,11 @@ meshadapt::WriteOptions form_of(const Arguments& arguments, const fs::path& to) 
   if (is_msh && form.version % 2 != 0)
     throw UsageError("option --version-of-file: " + to.string() + " takes 2 or 4");
   if (holds_field(to))
-    form.form = to.extension() == ".sol" ? meshadapt::WriteOptions::Form::ascii
-                                         : meshadapt::WriteOptions::Form::binary;
+    form.form = to.extension() == ".sol" ? WriteOptions::Form::ascii : WriteOptions::Form::binary;
   if (!arguments.has("--binary")) return form;
   if (!is_msh && !is_vtk)
     throw UsageError("option --binary: expected an output .msh or .vtk, found " + to.string());
-  form.form = meshadapt::WriteOptions::Form::binary;
+  form.form = WriteOptions::Form::binary;
   return form;
 }
 
@@ -99,15 +90,16 @@ int run(const Arguments& arguments) {
                      to.string() + "; convert the field by itself");
   if (holds_field(to) && join_option(arguments))
     throw UsageError("option --join: expected an output that is a mesh, found " + to.string());
-  meshadapt::WriteOptions form = form_of(arguments, to);
-  meshadapt::check_writable(place_of(to));
-  meshadapt::Warnings warnings;
+  WriteOptions form = form_of(arguments, to);
+  check_writable(place_of(to));
+  Warnings warnings;
   form.warnings = &warnings;
   if (holds_field(from)) {
-    meshadapt::write_field(place_of(to), meshadapt::read_field(from, &warnings), form);
+    write_field(place_of(to), read_field(from, &warnings), form);
   } else if (holds_field(to)) {
-    const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from);
-    meshadapt::write_field(place_of(to), read_fields(from, mesh, warnings), form);
+    MeshWithFields file = read_mesh_with_fields(from, &warnings);
+    const auto fields = at_vertices(std::move(file.fields), from.string());
+    write_field(place_of(to), side_by_side(fields, file.mesh), form);
   } else {
     convert_mesh(from, to, arguments, form, warnings);
   }

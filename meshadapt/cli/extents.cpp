@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -12,9 +11,6 @@
 namespace ductile::cli {
 
 namespace {
-
-using meshadapt::AnyMesh;
-using meshadapt::Cells;
 
 double angle_between(const Position& u, const Position& v) {
   return std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / std::numbers::pi;
@@ -29,61 +25,6 @@ double angle_at(const Position& at, const Position& a, const Position& b) {
 double dihedral_angle(const Position& a, const Position& b, const Position& c, const Position& d) {
   return angle_between(cross(b - a, c - a), cross(b - a, d - a));
 }
-
-class Measuring {
- public:
-  explicit Measuring(const AnyMesh& mesh) : mesh_(mesh) {}
-
-  Extents run() {
-    find_box();
-    add(1, mesh_.edges, [](const auto&) {});
-    add(2, mesh_.triangles, [this](const auto& p) {
-      if (mesh_.dimension == 2)
-        for (std::size_t i = 0; i < 3; ++i) note(angle_at(p[i], p[(i + 1) % 3], p[(i + 2) % 3]));
-    });
-    add(3, mesh_.tetrahedra, [this](const auto& p) {
-      for (const auto& [a, b] : meshadapt::Simplex<3>::edge) {
-        const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-        const std::size_t k = i != 0 && j != 0 ? 0 : i != 1 && j != 1 ? 1 : 2;
-        note(dihedral_angle(p[i], p[j], p[k], p[6 - i - j - k]));
-      }
-    });
-    if (smallest_ <= largest_) {
-      found_.smallest_angle = smallest_;
-      found_.largest_angle = largest_;
-    }
-    return std::move(found_);
-  }
-
- private:
-  void find_box() {
-    const auto dim = static_cast<std::size_t>(mesh_.dimension);
-    for (std::size_t i = 0; i < mesh_.coordinates.size(); ++i) {
-      double &low = found_.low[i % dim], &high = found_.high[i % dim];
-      low = i < dim ? mesh_.coordinates[i] : std::min(low, mesh_.coordinates[i]);
-      high = i < dim ? mesh_.coordinates[i] : std::max(high, mesh_.coordinates[i]);
-    }
-  }
-
-  template <int Corners>
-  void add(int dimension, const Cells<Corners>& cells, auto&& look) {
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      std::array<Position, Corners> p;
-      for (std::size_t i = 0; i < p.size(); ++i) p[i] = position(mesh_, cells.vertices[c][i]);
-      found_.size_of[{dimension, cells.reference[c]}] += measure(mesh_, cells.vertices[c]);
-      look(p);
-    }
-  }
-
-  void note(double angle) {
-    smallest_ = std::min(smallest_, angle);
-    largest_ = std::max(largest_, angle);
-  }
-
-  const AnyMesh& mesh_;
-  Extents found_;
-  double smallest_ = std::numeric_limits<double>::infinity(), largest_ = -smallest_;
-};
 
 /// A side of a facet, the vertices that are left without its corner `tip`.
 template <int Corners>
@@ -136,7 +77,7 @@ std::size_t ridges_among(const AnyMesh& mesh, const Cells<Corners>& facets, doub
 /// A facet's corners, the middles of its edges, and its own middle.
 template <int Corners>
 double farthest(const runtime::Executor& executor, const AnyMesh& mesh,
-                const Cells<Corners>& facets, const meshadapt::Geometry& geometry) {
+                const Cells<Corners>& facets, const Geometry& geometry) {
   const auto distance = [&](const Position& p) {
     const auto found = geometry.closest(p.x, std::numeric_limits<double>::infinity());
     return found ? norm(p - Position{found->position}) : -1;
@@ -173,14 +114,59 @@ double measure(const AnyMesh& mesh, std::span<const std::uint32_t> corners) {
   return std::abs(dot(edge(1), cross(edge(2), edge(3)))) / 6;
 }
 
-double Extents::total(int dimension) const {
-  double sum = 0;
-  for (const auto& [key, size] : size_of)
-    if (key.first == dimension) sum += size;
+Extents::Amount Extents::total(std::size_t dimension) const {
+  Amount sum;
+  for (const auto& [reference, amount] : amount_of.at(dimension)) {
+    sum.count += amount.count;
+    sum.size += amount.size;
+  }
   return sum;
 }
 
-Extents extents_of(const AnyMesh& mesh) { return Measuring(mesh).run(); }
+Box<3> box_of(const AnyMesh& mesh) {
+  auto box = Box<3>::empty();
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    box = join(box, {position(mesh, v), position(mesh, v)});
+  return box;
+}
+
+Extents extents_of(const AnyMesh& mesh) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Extents found{.box = box_of(mesh)};
+  double smallest = infinity, largest = -infinity;
+  const auto note = [&](double angle) {
+    smallest = std::min(smallest, angle);
+    largest = std::max(largest, angle);
+  };
+  const auto add = [&]<int Corners>(const Cells<Corners>& cells, const auto& look) {
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      std::array<Position, Corners> p;
+      for (std::size_t i = 0; i < p.size(); ++i) p[i] = position(mesh, cells.vertices[c][i]);
+      Extents::Amount& amount = found.amount_of[Corners - 1][cells.reference[c]];
+      ++amount.count;
+      amount.size += measure(mesh, cells.vertices[c]);
+      look(p);
+    }
+  };
+  for (const std::int32_t reference : mesh.vertex_reference) ++found.amount_of[0][reference].count;
+  add(mesh.edges, [](const auto&) {});
+  add(mesh.triangles, [&](const auto& p) {
+    if (mesh.dimension == 2)
+      for (std::size_t i = 0; i < 3; ++i) note(angle_at(p[i], p[(i + 1) % 3], p[(i + 2) % 3]));
+  });
+  add(mesh.tetrahedra, [&](const auto& p) {
+    for (const auto& [a, b] : Simplex<3>::edge) {
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      const std::size_t k = i != 0 && j != 0 ? 0 : i != 1 && j != 1 ? 1 : 2;
+      note(dihedral_angle(p[i], p[j], p[k], p[6 - i - j - k]));
+    }
+  });
+  if (smallest <= largest) {
+    found.smallest_angle = smallest;
+    found.largest_angle = largest;
+  }
+  return found;
+}
 
 std::size_t ridge_count(const AnyMesh& mesh, double angle) {
   return mesh.dimension == 2 ? ridges_among(mesh, mesh.edges, angle)
@@ -188,7 +174,7 @@ std::size_t ridge_count(const AnyMesh& mesh, double angle) {
 }
 
 std::optional<double> distance_to(const runtime::Executor& executor, const AnyMesh& mesh,
-                                  const meshadapt::Geometry& geometry) {
+                                  const Geometry& geometry) {
   const double most = mesh.dimension == 2 ? farthest(executor, mesh, mesh.edges, geometry)
                                           : farthest(executor, mesh, mesh.triangles, geometry);
   return most < 0 ? std::nullopt : std::optional(most);

@@ -10,46 +10,53 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <utility>
 
+#include "arguments.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/box.hpp"
 
 namespace ductile::cli {
 
-using Position = meshadapt::Vector<3>;
+using Position = Vector<3>;
 /// Where a vertex is; z is 0 in 2D.
-Position position(const meshadapt::AnyMesh& mesh, std::size_t vertex);
+Position position(const AnyMesh& mesh, std::size_t vertex);
 
 /// The length, area or volume of a cell with two, three or four corners.
-double measure(const meshadapt::AnyMesh& mesh, std::span<const std::uint32_t> corners);
+double measure(const AnyMesh& mesh, std::span<const std::uint32_t> corners);
+
+/// The box of all vertices, of which a mesh has some.
+Box<3> box_of(const AnyMesh& mesh);
 
 struct Extents {
-  std::array<double, 3> low{}, high{};  ///< the box; entries beyond the dimension are 0
+  struct Amount {
+    std::size_t count = 0;
+    double size = 0;  ///< length of edges, area of triangles, volume of tetrahedra
+  };
 
-  /// [dimension, reference] length of edges, area of triangles, volume of tetrahedra.
-  std::map<std::pair<int, std::int32_t>, double> size_of;
+  Box<3> box;
+  std::array<std::map<std::int32_t, Amount>, 4> amount_of{};  ///< [dimension][reference]
 
   /// Degrees: in 2D between edges, in 3D between facets of an element (dihedral); 0 without any.
   double smallest_angle = 0, largest_angle = 0;
 
-  /// The size of all of one dimension.
-  double total(int dimension) const;
+  /// The amount of all of one dimension.
+  Amount total(std::size_t dimension) const;
 };
 
 /// Sums are made in the order of the mesh. Expects cells to name existing vertices.
-Extents extents_of(const meshadapt::AnyMesh& mesh);
+Extents extents_of(const AnyMesh& mesh);
 
 /// The number of edges, in 2D of vertices, where listed facets turn by an angle in degrees or more,
 /// or where one ends or three meet.
-std::size_t ridge_count(const meshadapt::AnyMesh& mesh, double angle);
+std::size_t ridge_count(const AnyMesh& mesh, double angle);
 
 /// The largest distance of listed facets from a geometry, at their corners and the middles of their
 /// edges and of themselves; none if nothing is curved. Thread safety: one caller; runs on the
 /// executor.
-std::optional<double> distance_to(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
-                                  const meshadapt::Geometry& geometry);
+std::optional<double> distance_to(const runtime::Executor& executor, const AnyMesh& mesh,
+                                  const Geometry& geometry);
 
 }  // namespace ductile::cli

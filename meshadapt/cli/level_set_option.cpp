@@ -1,17 +1,10 @@
 #include "level_set_option.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cstdio>
 #include <limits>
 
 #include "files.hpp"
-#include "report.hpp"
 
 namespace ductile::cli {
-
-using meshadapt::AnyField;
-using meshadapt::InputError;
 
 std::optional<LevelSetOption> level_set_option(const Arguments& arguments) {
   constexpr double mmgs_share = 1e-5;
@@ -42,8 +35,8 @@ std::optional<LevelSetOption> level_set_option(const Arguments& arguments) {
   return option;
 }
 
-AnyField read_level_set(const LevelSetOption& option, const meshadapt::MeshWithFields& file,
-                        meshadapt::Warnings& warnings) {
+AnyField read_level_set(const LevelSetOption& option, const MeshWithFields& file,
+                        Warnings& warnings) {
   const std::string name = option.values.value_or(file.mesh.name);
   auto fields = option.values ? chosen_solutions({*option.values}, file, warnings) : file.fields;
   if (!option.values)
@@ -63,27 +56,16 @@ AnyField read_level_set(const LevelSetOption& option, const meshadapt::MeshWithF
 
 namespace {
 
-std::string in_short(double value) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
+std::string in_short(double value) { return format("%.6g", value); }
 
 std::string list_of(const std::vector<std::int32_t>& references) {
-  std::string list;
-  for (const std::int32_t reference : references)
-    list += (list.empty() ? "" : ", ") + std::to_string(reference);
-  return list.empty() ? "none" : list;
-}
-
-std::string json_list_of(const std::vector<std::int32_t>& references) {
-  return "[" + (references.empty() ? "" : list_of(references)) + "]";
+  return references.empty() ? "none" : listed(references);
 }
 
 }  // namespace
 
-CutInput cut_report(const LevelSetOption& option, const meshadapt::CutOptions& options,
-                    const meshadapt::CutReport& report) {
+CutInput cut_report(const LevelSetOption& option, const CutOptions& options,
+                    const CutReport& report) {
   CutInput cut;
   cut.report = report;
   cut.where = option.values.value_or("its field") + " is " + in_short(report.level);
@@ -92,7 +74,7 @@ CutInput cut_report(const LevelSetOption& option, const meshadapt::CutOptions& o
     cut.minus = {options.minus};
     cut.plus = {options.plus};
   }
-  for (const meshadapt::CutMaterial& material : options.materials) {
+  for (const CutMaterial& material : options.materials) {
     if (!material.split) continue;
     cut.minus.push_back(material.minus);
     cut.plus.push_back(material.plus);
@@ -101,9 +83,9 @@ CutInput cut_report(const LevelSetOption& option, const meshadapt::CutOptions& o
 }
 
 std::string to_text(const CutInput& cut) {
-  const meshadapt::CutReport& report = cut.report;
+  const CutReport& report = cut.report;
   const bool in_plane = cut.before.dimension == 2 || report.on_surface;
-  std::string text = meshadapt::printable(cut.before.name + ": cut where " + cut.where) + ": " +
+  std::string text = printable(cut.before.name + ": cut where " + cut.where) + ": " +
                      counted(report.cut_elements, "element", "elements") + " cut, " +
                      counted(report.moved_vertices, "vertex", "vertices") + " moved onto the " +
                      (in_plane ? "curve" : "surface");
@@ -119,18 +101,15 @@ std::string to_text(const CutInput& cut) {
   return text;
 }
 
-std::string to_json(const CutInput& cut) {
-  const meshadapt::CutReport& report = cut.report;
-  return "{\"where\": " + json_string(cut.where) + ", \"level\": " + json_number(report.level) +
-         ", \"references_below\": " + json_list_of(cut.minus) +
-         ", \"references_above\": " + json_list_of(cut.plus) +
-         ", \"reference_between\": " + std::to_string(cut.interface) +
-         ", \"volume_below\": " + json_number(report.minus_volume) +
-         ", \"facets_between\": " + std::to_string(report.interface_facets) +
-         ", \"cut_elements\": " + std::to_string(report.cut_elements) +
-         ", \"moved_vertices\": " + std::to_string(report.moved_vertices) +
-         ", \"removed_components\": " + std::to_string(report.removed_components) +
-         ", \"removed_volume\": " + json_number(report.removed_volume) + "}";
+Json to_json(const CutInput& cut) {
+  const CutReport& report = cut.report;
+  return json_object("where", cut.where, "level", report.level, "references_below",
+                     json_list({cut.minus.begin(), cut.minus.end()}), "references_above",
+                     json_list({cut.plus.begin(), cut.plus.end()}), "reference_between",
+                     cut.interface, "volume_below", report.minus_volume, "facets_between",
+                     report.interface_facets, "cut_elements", report.cut_elements, "moved_vertices",
+                     report.moved_vertices, "removed_components", report.removed_components,
+                     "removed_volume", report.removed_volume);
 }
 
 }  // namespace ductile::cli

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,12 +13,12 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/level_set.hpp"
-#include "ductile/runtime/executor.hpp"
+#include "report.hpp"
 
 namespace ductile::cli {
 
 struct LevelSetOption {
-  meshadapt::CutOptions cut;          // without its materials, which are in a file
+  CutOptions cut;                     // without its materials, which are in a file
   std::optional<std::string> values;  // the value of -sol: a file, or a field of the mesh's file
 };
 
@@ -28,14 +27,13 @@ std::optional<LevelSetOption> level_set_option(const Arguments& arguments);
 
 /// The values at the vertices of the mesh: the one scalar field that the option names or, without a
 /// name, that is in the mesh's own file. Throws InputError.
-meshadapt::AnyField read_level_set(const LevelSetOption& option,
-                                   const meshadapt::MeshWithFields& file,
-                                   meshadapt::Warnings& warnings);
+AnyField read_level_set(const LevelSetOption& option, const MeshWithFields& file,
+                        Warnings& warnings);
 
 /// A cut and what it was made from.
 struct CutInput {
-  meshadapt::AnyMesh before;
-  meshadapt::CutReport report;
+  AnyMesh before;
+  CutReport report;
   std::string where;                      // "phi.sol is 0.5"
   std::vector<std::int32_t> minus, plus;  // references of the elements on each side
   std::int32_t interface = 0;             // of the facets on the surface
@@ -43,11 +41,11 @@ struct CutInput {
 
 /// The report of a cut that was made with these options, which may have got materials since; the
 /// mesh before is for the caller to set.
-CutInput cut_report(const LevelSetOption& option, const meshadapt::CutOptions& options,
-                    const meshadapt::CutReport& report);
+CutInput cut_report(const LevelSetOption& option, const CutOptions& options,
+                    const CutReport& report);
 
 /// The lines and the JSON object about a cut.
 std::string to_text(const CutInput& cut);
-std::string to_json(const CutInput& cut);
+Json to_json(const CutInput& cut);
 
 }  // namespace ductile::cli

@@ -6,28 +6,25 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
-#include "distance_field.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/signed_distance.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"
-#include "recovery_option.hpp"
-#include "run_in_team.hpp"
+#include "io/number_in.hpp"
+#include "metric/entities_of.hpp"
 #include "size_options.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-namespace fs = std::filesystem;
-using meshadapt::AnyField;
-using meshadapt::AnyMesh;
-using meshadapt::Metric;
 using runtime::Executor;
 
 constexpr std::array<Option, 21> options{{
@@ -62,15 +59,15 @@ struct Job {
   std::string operation;
   fs::path mesh, output;
   std::vector<fs::path> fields;
-  meshadapt::SolutionMetricOptions fit;  // fit.goal.bounds hold for all operations
+  SolutionMetricOptions fit;  // fit.goal.bounds hold for all operations
   SizeOptions sizes;
   std::vector<std::string> inside;  // regions that a distance is negative in
   double hausdorff = 0;
   double gradation = 0;
-  int threads = 0, verbosity = 1;
+  int verbosity = 1;
 
   bool bounded() const {
-    const meshadapt::SizeBounds& bounds = fit.goal.bounds;
+    const SizeBounds& bounds = fit.goal.bounds;
     return bounds.smallest > 0 || bounds.largest > 0 || bounds.anisotropy > 0;
   }
 };
@@ -107,19 +104,23 @@ void set_files(Job& job, const Arguments& arguments) {
   job.mesh = input_of(words[1]);
   job.fields.assign(words.begin() + 2, words.end());
   job.output = arguments.text("-o").value_or("");
-  if (job.output.extension() != ".sol" && job.output.extension() != ".solb" &&
-      !holds_fields(job.output))
-    throw UsageError(
-        "option -o: expected a name ending in .sol or .solb, or of a format that holds a mesh and"
-        " fields, found '" +
-        job.output.string() + "'");
+  expect_fields_held(job.output);
 }
 
-void refuse(const Job& job, const Arguments& arguments,
-            std::initializer_list<std::string_view> names) {
-  for (const std::string_view name : names)
-    if (arguments.has(name))
-      throw UsageError("option " + std::string(name) + ": " + job.operation + " takes none");
+/// Throws UsageError for options that the operation has no use for.
+void expect_options_of(const std::string& operation, const Arguments& arguments) {
+  const auto only = [&](std::string_view operations, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+      if (arguments.has(name) && operations.find(operation) == std::string_view::npos)
+        throw UsageError("option " + std::string(name) + ": " + operation + " takes none");
+  };
+  only("make", {"--error", "--norm", "--recovery"});
+  only("make scale", {"--complexity", "--elements"});
+  only("size", {"--default", "--near", "--on"});
+  only("size distance", {"--in"});
+  only("distance", {"-hausd"});
+  only("make size implied intersect scale bound grade", {"-hmin", "-hmax", "-hgrad"});
+  only("make implied intersect scale bound grade", {"--anisotropy"});
 }
 
 double norm_of(const Arguments& arguments) {
@@ -133,8 +134,6 @@ double norm_of(const Arguments& arguments) {
 
 void set_goal(Job& job, const Arguments& arguments) {
   const bool makes = job.operation == "make", scales = job.operation == "scale";
-  if (!makes) refuse(job, arguments, {"--error", "--norm", "--recovery"});
-  if (!makes && !scales) refuse(job, arguments, {"--complexity", "--elements"});
   auto& goal = job.fit.goal;
   goal.complexity = arguments.positive("--complexity").value_or(0);
   goal.error = arguments.positive("--error").value_or(0);
@@ -146,40 +145,26 @@ void set_goal(Job& job, const Arguments& arguments) {
   job.fit.recovery = recovery_in(arguments);
 }
 
-void set_distance(Job& job, const Arguments& arguments) {
-  refuse(job, arguments,
-         {"--default", "--near", "--on", "-hmin", "-hmax", "--anisotropy", "-hgrad"});
-  job.inside = arguments.texts("--in");
-  if (job.inside.empty()) throw UsageError("distance: expected --inside with a region");
-  job.hausdorff = size_option(arguments, "-hausd").value_or(0);
-}
-
 void set_sizes(Job& job, const Arguments& arguments) {
-  if (job.operation == "distance") return set_distance(job, arguments);
-  refuse(job, arguments, {"-hausd"});
-  if (job.operation != "size")
-    return refuse(job, arguments, {"--default", "--near", "--on", "--in"});
-  refuse(job, arguments, {"--anisotropy"});
+  job.inside = arguments.texts("--in");
+  if (job.operation == "distance" && job.inside.empty())
+    throw UsageError("distance: expected --inside with a region");
+  job.hausdorff = size_option(arguments, "-hausd").value_or(0);
+  if (job.operation != "size") return;
   job.sizes = SizeOptions(arguments, "--default");
   if (!job.sizes.any() && !arguments.has("--default"))
     throw UsageError("size: expected some of --default, --near, --on and --in");
-  for (const fs::path& input : job.sizes.inputs()) expect_no_input(job.output, {input});
+  expect_no_input(job.output, job.sizes.inputs());
 }
 
 void set_limits(Job& job, const Arguments& arguments) {
   auto& bounds = job.fit.goal.bounds;
-  bounds.smallest = size_option(arguments, "-hmin").value_or(0);
-  bounds.largest = size_option(arguments, "-hmax").value_or(0);
+  bounds = size_bounds(arguments);
   bounds.anisotropy = arguments.positive("--anisotropy").value_or(0);
-  if (bounds.largest > 0 && bounds.smallest > bounds.largest)
-    throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
   if (bounds.anisotropy > 0 && bounds.anisotropy < 1)
     throw UsageError("option --anisotropy: expected 1 or more, found '" +
                      *arguments.text("--anisotropy") + "'");
-  job.gradation = std::max(0.0, arguments.number("-hgrad").value_or(0));  // 0 or less: none
-  if (job.gradation > 0 && job.gradation < 1)
-    throw UsageError("option -hgrad: expected a factor of 1 or more, found '" +
-                     *arguments.text("-hgrad") + "'");
+  job.gradation = gradation_of(arguments, "-hgrad");
   if (job.operation == "bound" && !job.bounded())
     throw UsageError("bound: expected some of -hmin, -hmax and --anisotropy");
   if (job.operation == "grade" && job.gradation == 0) throw UsageError("grade: expected -hgrad");
@@ -188,12 +173,12 @@ void set_limits(Job& job, const Arguments& arguments) {
 Job read_job(const Arguments& arguments) {
   Job job;
   set_files(job, arguments);
+  expect_options_of(job.operation, arguments);
   set_goal(job, arguments);
   set_sizes(job, arguments);
   set_limits(job, arguments);
-  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
-  job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
-  meshadapt::check_writable(job.output);
+  job.verbosity = verbosity_of(arguments);
+  check_writable(job.output);
   return job;
 }
 
@@ -202,18 +187,17 @@ Job read_job(const Arguments& arguments) {
 template <int Dim, int Space = Dim>
 class Work {
  public:
-  Work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
-       meshadapt::Warnings& warnings)
+  Work(const Executor& executor, const Job& job, const MeshWithFields& file, Warnings& warnings)
       : executor_(executor), job_(job), file_(file), warnings_(warnings) {
     goal_ = job.fit.goal;
   }
 
   AnyField run() {
     start();
-    meshadapt::bound_sizes(executor_, metric_of_, goal_.bounds);
+    bound_sizes(executor_, metric_of_, goal_.bounds);
     if (job_.gradation > 0) grade();
     if (job_.operation == "size") return sizes();
-    AnyField metric = meshadapt::symmetric_field(executor_, metric_of_, job_.output.string());
+    AnyField metric = symmetric_field(executor_, metric_of_, job_.output.string());
     expect_metric(metric);
     return metric;
   }
@@ -221,72 +205,59 @@ class Work {
   std::string summary() const {
     double finest = 0, coarsest = std::numeric_limits<double>::infinity();
     for (const Metric<Space>& metric : metric_of_)
-      for (const double value : meshadapt::principal_axes(metric).value) {
+      for (const double value : principal_axes(metric).value) {
         finest = std::max(finest, value);
         coarsest = std::min(coarsest, value);
       }
     const double complexity = meshadapt::complexity(executor_, fixed_mesh(), metric_of_);
     const double elements = complexity * elements_per_unit_;
-    char text[200];
-    std::snprintf(
-        text, sizeof text, "complexity %.6g, for about %s %s; sizes from %.3g to %.3g", complexity,
-        with_commas(static_cast<std::size_t>(std::min(elements, 1e18))).c_str(),
-        Dim == 2 ? "triangles" : "tetrahedra", 1 / std::sqrt(finest), 1 / std::sqrt(coarsest));
-    return text;
+    return format("complexity %.6g, for about %s %s; sizes from %.3g to %.3g", complexity,
+                  with_commas(static_cast<std::size_t>(std::min(elements, 1e18))).c_str(),
+                  Dim == 2 ? "triangles" : "tetrahedra", 1 / std::sqrt(finest),
+                  1 / std::sqrt(coarsest));
   }
 
  private:
   /// Throws InputError unless reading accepts the metric.
   void expect_metric(const AnyField& metric) const {
     try {
-      meshadapt::metric_of(metric, mesh_);
-    } catch (const meshadapt::InputError& error) {
+      metric_of(metric, mesh_);
+    } catch (const InputError& error) {
       const std::string why = error.in_file();
-      throw meshadapt::InputError(
-          why.substr(0, why.rfind(';')) +
-          "; ask for one within that, or give -hmin, -hmax or --anisotropy");
+      throw InputError(why.substr(0, why.rfind(';')) +
+                       "; ask for one within that, or give -hmin, -hmax or --anisotropy");
     }
   }
 
   void start() {
     if (job_.operation == "make") return make();
-    if (job_.operation == "implied") return imply();
-    if (job_.operation == "size") return size();
+    if (job_.operation == "implied") return take(implied_tensors(executor_, mesh_));
+    if (job_.operation == "size")
+      return take(
+          metric_of(size_field(executor_, mesh_, job_.sizes.sizes_for(mesh_, warnings_)), mesh_));
     metric_of_ = metrics(job_.fields[0]);
     if (job_.operation == "scale") scale();
     for (std::size_t i = 1; i < job_.fields.size(); ++i)
-      meshadapt::intersect(executor_, metric_of_, metrics(job_.fields[i]));
+      intersect(executor_, metric_of_, metrics(job_.fields[i]));
   }
 
-  meshadapt::FixedMesh<Dim, Space> fixed_mesh() const {
-    return meshadapt::make_fixed_mesh<Dim, Space>(executor_, mesh_);
-  }
+  FixedMesh<Dim, Space> fixed_mesh() const { return make_fixed_mesh<Dim, Space>(executor_, mesh_); }
 
   std::vector<Metric<Space>> metrics(const fs::path& path) {
-    return meshadapt::tensors_of<Space>(executor_,
-                                        read_metric(path, mesh_, warnings_, goal_.bounds));
+    return tensors_of<Space>(executor_, read_metric(path, mesh_, warnings_, goal_.bounds));
   }
+
+  void take(const AnyField& metric) { metric_of_ = tensors_of<Space>(executor_, metric); }
 
   void make() {
     std::vector<std::string> words;
     for (const fs::path& word : job_.fields) words.push_back(word.string());
     AnyField field = side_by_side(chosen_solutions(words, file_, warnings_), mesh_);
     field.name = words.back();
-    const auto made = meshadapt::solution_metric(executor_, mesh_, field,
-                                                 {goal_, job_.gradation, job_.fit.recovery});
-    metric_of_ = meshadapt::tensors_of<Space>(executor_, made.metric);
+    const auto made =
+        solution_metric(executor_, mesh_, field, {goal_, job_.gradation, job_.fit.recovery});
+    take(made.metric);
     check(made.fit);
-  }
-
-  void imply() {
-    metric_of_ =
-        meshadapt::tensors_of<Space>(executor_, meshadapt::implied_tensors(executor_, mesh_));
-  }
-
-  void size() {
-    const AnyField field =
-        meshadapt::size_field(executor_, mesh_, job_.sizes.sizes_for(mesh_, warnings_));
-    metric_of_ = meshadapt::tensors_of<Space>(executor_, meshadapt::metric_of(field, mesh_));
   }
 
   /// The sizes of isotropic metrics; bounds and gradation keep them isotropic.
@@ -294,25 +265,24 @@ class Work {
     std::vector<double> size_of(metric_of_.size());
     runtime::parallel_for(executor_, size_of.size(),
                           [&](std::size_t v) { size_of[v] = 1 / std::sqrt(metric_of_[v].m[0]); });
-    return meshadapt::scalar_field(Space, std::move(size_of), job_.output.string());
+    return scalar_field(Space, std::move(size_of), job_.output.string());
   }
 
   void scale() {
-    check(meshadapt::scale_to_complexity(
-        executor_, metric_of_, fixed_mesh(),
-        {goal_.complexity, goal_.bounds, job_.gradation, goal_.elements}));
+    check(scale_to_complexity(executor_, metric_of_, fixed_mesh(),
+                              {goal_.complexity, goal_.bounds, job_.gradation, goal_.elements}));
   }
 
   void grade() {
     const auto report =
-        meshadapt::limit_gradation(executor_, metric_of_, fixed_mesh(), {.factor = job_.gradation});
+        limit_gradation(executor_, metric_of_, fixed_mesh(), {.factor = job_.gradation});
     if (!report.converged)
       warnings_.push_back("sizes still grow faster than asked for in places, after " +
                           std::to_string(report.sweeps) + " sweeps over the edges");
-    meshadapt::bound_sizes(executor_, metric_of_, goal_.bounds);
+    bound_sizes(executor_, metric_of_, goal_.bounds);
   }
 
-  void check(const meshadapt::MetricFit& fit) {
+  void check(const MetricFit& fit) {
     if (fit.complexity > 0) elements_per_unit_ = fit.elements / fit.complexity;
     if (fit.reached) return;
     const char* const goal = goal_.error > 0      ? "error"
@@ -324,40 +294,55 @@ class Work {
     const bool finer = goal_.error > 0 ? !(found <= 2 * goal_.error)
                                        : !(found >= std::max(goal_.complexity, goal_.elements) / 2);
     if (finer && goal_.bounds.smallest == 0)  // so only the range of numbers is in the way
-      throw meshadapt::InputError(job_.operation +
-                                  ": no metric of sizes from 1e-75 to 1e75 has the " + goal +
-                                  " asked for; ask for another");
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "no metric within the bounds has the %s asked for; the nearest found has %.6g",
-                  goal, found);
-    warnings_.push_back(text);
+      throw InputError(job_.operation + ": no metric of sizes from 1e-75 to 1e75 has the " + goal +
+                       " asked for; ask for another");
+    warnings_.push_back(
+        format("no metric within the bounds has the %s asked for; the nearest found has %.6g", goal,
+               found));
   }
 
   const Executor& executor_;
   const Job& job_;
-  const meshadapt::MeshWithFields& file_;
+  const MeshWithFields& file_;
   const AnyMesh& mesh_ = file_.mesh;
-  meshadapt::Warnings& warnings_;
-  meshadapt::HessianMetricOptions goal_;
-  double elements_per_unit_ = 1 / meshadapt::complexity_of_elements(Dim, 1);  ///< of complexity
-  std::vector<Metric<Space>> metric_of_;                                      // [vertex]
+  Warnings& warnings_;
+  HessianMetricOptions goal_;
+  double elements_per_unit_ = 1 / complexity_of_elements(Dim, 1);  ///< of complexity
+  std::vector<Metric<Space>> metric_of_;                           // [vertex]
 };
+
+/// The signed distance, see signed_distance(), to the regions of these references or names, and a
+/// line about it. Throws InputError, also for names that the mesh does not have.
+std::pair<AnyField, std::string> distance_to_regions(const Executor& executor, const AnyMesh& mesh,
+                                                     const Job& job) {
+  SignedDistanceOptions sought{.inside = {}, .tolerance = job.hausdorff};
+  for (const std::string& region : job.inside) {
+    if (const auto reference = number_in<std::int32_t>(region)) {
+      sought.inside.push_back(*reference);
+      continue;
+    }
+    for (const auto& [dimension, reference] : references_named(mesh, region))
+      if (dimension == mesh.dimension) sought.inside.push_back(reference);
+  }
+  const auto distances = signed_distance(executor, mesh, sought);
+  const auto [low, high] = std::minmax_element(distances.begin(), distances.end());
+  return {scalar_field(mesh.dimension, distances, "distance"),
+          format("distances from %.4g to %.4g", *low, *high)};
+}
 
 void write(const Job& job, const AnyMesh& mesh, const AnyField& field, const std::string& summary) {
   const char* const name = job.operation == "distance" ? "distance" : "metric";
   if (holds_fields(job.output))
-    meshadapt::write_mesh(job.output, mesh, {.fields = meshadapt::named_fields(field, name)});
+    write_mesh(job.output, mesh, {.fields = named_fields(field, name)});
   else
-    meshadapt::write_field(job.output, field);
+    write_field(job.output, field);
   if (job.verbosity > 0)
-    std::printf("%s\nwritten: %s\n", summary.c_str(),
-                meshadapt::printable(job.output.string()).c_str());
+    std::printf("%s\nwritten: %s\n", summary.c_str(), printable(job.output.string()).c_str());
 }
 
 template <int Dim, int Space = Dim>
-void work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
-          meshadapt::Warnings& warnings) {
+void work(const Executor& executor, const Job& job, const MeshWithFields& file,
+          Warnings& warnings) {
   Work<Dim, Space> work(executor, job, file, warnings);
   const AnyField metric = work.run();
   const std::string summary = work.summary();  // which may find fault with the mesh: before writing
@@ -367,16 +352,16 @@ void work(const Executor& executor, const Job& job, const meshadapt::MeshWithFie
 
 int run(const Arguments& arguments) {
   const Job job = read_job(arguments);
-  return run_in_team({.threads = job.threads}, [&](const Executor& executor) {
-    meshadapt::Warnings warnings;
-    const auto file = meshadapt::read_mesh_with_fields(job.mesh, &warnings);
+  return run_in_team({.threads = threads_of(arguments)}, [&](const Executor& executor) {
+    Warnings warnings;
+    const auto file = read_mesh_with_fields(job.mesh, &warnings);
     if (job.operation == "distance") {
-      const DistanceField distance(executor, file.mesh, job.inside, job.hausdorff);
+      const auto [field, summary] = distance_to_regions(executor, file.mesh, job);
       print_warnings(warnings, job.verbosity);
-      write(job, file.mesh, distance.field, distance.summary);
+      write(job, file.mesh, field, summary);
       return done;
     }
-    if (meshadapt::is_surface(file.mesh))
+    if (is_surface(file.mesh))
       work<2, 3>(executor, job, file, warnings);
     else
       file.mesh.dimension == 2 ? work<2>(executor, job, file, warnings)

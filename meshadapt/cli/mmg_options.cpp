@@ -1,5 +1,7 @@
 #include "mmg_options.hpp"
 
+#include "report.hpp"
+
 namespace ductile::cli {
 
 namespace {
@@ -29,17 +31,16 @@ std::string_view instead_of_mmg_option(std::string_view name) {
 }
 
 std::string unneeded_mmg_options(const Arguments& arguments) {
-  std::string list;
-  const auto add = [&list](std::string_view name) {
-    list += (list.empty() ? "" : ", ") + std::string(name);
-  };
+  std::vector<std::string> given;
   for (const Option& option : mmg_options)
-    if (arguments.has(option.name)) add(option.name);
-  if (arguments.has("-ar") && !arguments.has("-hausd")) add("-ar (without -hausd all edges stay)");
+    if (arguments.has(option.name)) given.emplace_back(option.name);
+  if (arguments.has("-ar") && !arguments.has("-hausd"))
+    given.emplace_back("-ar (without -hausd all edges stay)");
   for (const char* option : {"-isoref", "-rmc"})
     if (arguments.has(option) && !arguments.has("-ls") && !arguments.has("-lssurf"))
-      add(std::string(option) + " (without -ls)");
-  if (list.empty()) return {};
+      given.push_back(std::string(option) + " (without -ls)");
+  if (given.empty()) return {};
+  std::string list = listed(given);
   if (arguments.has("-nr") && arguments.has("-hausd"))
     list += " (no edge that turns by less than 90 degrees stays)";
   return "Mmg's options that need not be given here: " + list;

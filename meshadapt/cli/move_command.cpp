@@ -1,11 +1,7 @@
-#include "move_command.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "adapt_report.hpp"
@@ -13,21 +9,18 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/move.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
-#include "report.hpp"
-#include "run_in_team.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh_job.hpp"
 #include "size_options.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-namespace fs = std::filesystem;
-using meshadapt::AnyField;
-using meshadapt::AnyMesh;
-using meshadapt::NamedField;
 using runtime::Executor;
 
 constexpr std::array<Option, 18> options{{
@@ -52,39 +45,30 @@ constexpr std::array<Option, 18> options{{
     {"-v", "N", "0 says nothing, 1 (default) sums up", "--verbose"},
 }};
 
+/// The command line of `move`, or of `adapt -lag`.
+struct MoveJob : MeshJob {
+  std::string displacement;  // a file, or a field of the mesh's file
+  MoveOptions move;          // without the metric and fields
+};
+
 // ---- The command line ----
 
 std::vector<std::int32_t> references(const Arguments& arguments, const char* option) {
   std::vector<std::int32_t> list;
-  std::string text = arguments.text(option).value_or("");
-  while (!text.empty()) {
-    const std::size_t end = text.find(',');
-    list.push_back(whole_number(option, text.substr(0, end), -2147483647, 2147483647));
-    text = end == std::string::npos ? "" : text.substr(end + 1);
-  }
+  if (const auto text = arguments.text(option))
+    for (const std::string& word : split(*text, ','))
+      list.push_back(whole_number(option, word, -2147483647, 2147483647));
   return list;
 }
 
 /// Sets the options that `move` and `adapt -lag` share.
 void set_common(MoveJob& job, const Arguments& arguments) {
-  const auto out = arguments.text("-o");
-  if (!out && job.input == "/dev/stdin")
-    throw UsageError("expected -o, because the mesh is read from standard input, found none");
-  job.output = out ? output_of(*out) : default_output(job.input);
-  expect_mesh_name(job.output);
-  job.fields = CarriedFields(arguments, job.output);
-  if (!arguments.has("--no-metric") && !holds_fields(job.output) && !is_standard_output(job.output))
-    job.metric_out = field_beside(job.output);
-  job.json = json_output(arguments);
-  if (job.json == standard_output && is_standard_output(job.output))
-    throw UsageError("option --json: expected a file, because the mesh goes to standard output");
-  job.size = size_option(arguments, "-hsiz");
-  job.move.smallest_size = size_option(arguments, "-hmin").value_or(0);
-  job.move.largest_size = size_option(arguments, "-hmax").value_or(0);
-  job.move.gradation = std::max(0.0, arguments.number("-hgrad").value_or(0));
+  set_job(job, arguments);
+  const SizeBounds bounds = size_bounds(arguments);
+  job.move.smallest_size = bounds.smallest;
+  job.move.largest_size = bounds.largest;
+  job.move.gradation = gradation_of(arguments, "-hgrad");
   job.move.complete_boundary = arguments.has("--complete-boundary");
-  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
-  job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
 }
 
 MoveJob move_job(const Arguments& arguments) {
@@ -107,46 +91,36 @@ MoveJob move_job(const Arguments& arguments) {
   return job;
 }
 
-std::vector<fs::path> outputs_of(const MoveJob& job) {
-  std::vector<fs::path> paths{place_of(job.output)};
-  if (job.metric_out) paths.push_back(*job.metric_out);
-  if (job.json && *job.json != standard_output) paths.push_back(*job.json);
-  paths.insert(paths.end(), job.fields.outputs().begin(), job.fields.outputs().end());
-  return paths;
-}
-
 void check_files(const MoveJob& job) {
   std::vector<fs::path> inputs = job.fields.inputs();
   inputs.push_back(job.input);
   if (is_file(job.displacement)) inputs.emplace_back(job.displacement);
   if (job.metric_in) inputs.push_back(*job.metric_in);
   for (const fs::path& output : outputs_of(job)) expect_no_input(output, inputs);
-  meshadapt::check_writable(outputs_of(job));
+  check_writable(outputs_of(job));
 }
 
 // ---- The work ----
 
-AnyField displacement_of(const MoveJob& job, const meshadapt::MeshWithFields& file,
-                         meshadapt::Warnings& warnings) {
+AnyField displacement_of(const MoveJob& job, const MeshWithFields& file, Warnings& warnings) {
   const std::vector<NamedField> found = chosen_solutions({job.displacement}, file, warnings);
   AnyField field = side_by_side(found, file.mesh);
   field.name = job.displacement;
   return field;
 }
 
-AnyField metric_of(const MoveJob& job, const meshadapt::MeshWithFields& file,
-                   meshadapt::Warnings& warnings) {
-  const meshadapt::SizeBounds bounds{job.move.smallest_size, job.move.largest_size};
-  if (job.size) return meshadapt::constant_metric(file.mesh, *job.size);
+AnyField metric_of(const MoveJob& job, const MeshWithFields& file, Warnings& warnings) {
+  const SizeBounds bounds{job.move.smallest_size, job.move.largest_size};
+  if (job.size) return constant_metric(file.mesh, *job.size);
   if (job.metric_in) return read_metric(*job.metric_in, file.mesh, warnings, bounds);
-  if (const auto own = metric_in(file)) return meshadapt::metric_of(*own, file.mesh, bounds);
-  return meshadapt::implied_metric(file.mesh);
+  if (const auto own = metric_in(file)) return metric_of(*own, file.mesh, bounds);
+  return implied_metric(file.mesh);
 }
 
 /// The fields that go along: `given` ones, and those of the mesh's own file if the output can hold
 /// them, without the displacement and the metric. Otherwise a warning names these.
-std::vector<NamedField> fields_along(const MoveJob& job, const meshadapt::MeshWithFields& file,
-                                     std::vector<NamedField> given, meshadapt::Warnings& warnings) {
+std::vector<NamedField> fields_along(const MoveJob& job, const MeshWithFields& file,
+                                     std::vector<NamedField> given, Warnings& warnings) {
   std::vector<NamedField> own;
   for (const NamedField& field : file.fields)
     if (field.name != "metric" && field.name != job.displacement &&
@@ -161,79 +135,54 @@ std::vector<NamedField> fields_along(const MoveJob& job, const meshadapt::MeshWi
 }
 
 /// Marks on elements go by value, and so do fields without an integral; all others keep it.
-meshadapt::Carrying carrying(const MoveJob& job, const NamedField& field) {
+Carrying carrying(const MoveJob& job, const NamedField& field) {
   const bool is_finite =
       std::ranges::all_of(field.values, [](double x) { return std::isfinite(x); });
   return job.fields.interpolates() || !is_finite || (field.whole && !is_at_vertices(field))
-             ? meshadapt::Carrying::by_value
-             : meshadapt::Carrying::conservatively;
+             ? Carrying::by_value
+             : Carrying::conservatively;
 }
 
-std::string summary(const MoveJob& job, const meshadapt::MovedMesh& moved) {
-  const meshadapt::MoveReport& report = moved.report;
-  const std::size_t elements =
-      moved.mesh.dimension == 2 ? moved.mesh.triangles.size() : moved.mesh.tetrahedra.size();
-  char text[400];
-  std::snprintf(
-      text, sizeof text,
-      "moved %.6g %% of the way in %d steps; %d adaptations of parts, %s elements in all\n"
-      "%s elements, worst quality %.3g\n%.2f s, %.2f s of them adapting\n",
-      100 * report.share, report.steps, report.adaptations,
-      with_commas(report.adapted_elements).c_str(), with_commas(elements).c_str(),
-      report.worst_quality, report.total_seconds, report.adapt_seconds);
-  std::string written;
-  for (const fs::path& path : outputs_of(job))
-    written += (written.empty() ? "written: " : ", ") + path.string();
-  return text + meshadapt::printable(written) + "\n";
+std::string summary(const MoveJob& job, const MovedMesh& moved) {
+  const MoveReport& report = moved.report;
+  return format(
+             "moved %.6g %% of the way in %d steps; %d adaptations of parts, %s elements in all\n"
+             "%s elements, worst quality %.3g\n%.2f s, %.2f s of them adapting\n",
+             100 * report.share, report.steps, report.adaptations,
+             with_commas(report.adapted_elements).c_str(),
+             with_commas(element_count(moved.mesh)).c_str(), report.worst_quality,
+             report.total_seconds, report.adapt_seconds) +
+         written(job) + "\n";
 }
 
 /// The meshes and metrics before and after.
 struct Run {
   const AnyMesh& before;
   const AnyField& metric;
-  const meshadapt::MovedMesh& moved;
+  const MovedMesh& moved;
 };
 
-std::string to_json(const Executor& executor, const Run& run, const meshadapt::Warnings& warnings) {
-  MeshSummary before = summarise_mesh(run.before), after = summarise_mesh(run.moved.mesh);
-  before.statistics = meshadapt::measure(executor, run.before, &run.metric);
-  after.statistics = meshadapt::measure(executor, run.moved.mesh, &run.moved.metric);
-  const meshadapt::MoveReport& report = run.moved.report;
-  std::string list;
-  for (const std::string& warning : warnings)
-    list += (list.empty() ? "" : ", ") + json_string(warning);
-  return "{\"before\": " + to_json(before) + ",\n \"after\": " + to_json(after) +
-         ",\n \"share\": " + json_number(report.share) +
-         ", \"stopped\": " + (report.stopped.empty() ? "null" : json_string(report.stopped)) +
-         ", \"steps\": " + std::to_string(report.steps) +
-         ", \"adaptations\": " + std::to_string(report.adaptations) +
-         ", \"adapted_elements\": " + std::to_string(report.adapted_elements) +
-         ", \"worst_quality\": " + json_number(report.worst_quality) +
-         ",\n \"threads\": " + std::to_string(executor.threads()) +
-         ", \"seconds\": {\"total\": " + json_number(report.total_seconds) +
-         ", \"adapting\": " + json_number(report.adapt_seconds) +
-         "},\n \"peak_memory_bytes\": " + std::to_string(runtime::peak_memory()) +
-         ",\n \"warnings\": [" + list + "]}\n";
-}
-
-/// Writes the outputs, which appear on commit(), except the JSON.
-void stage(meshadapt::AtomicOutputs& outputs, const MoveJob& job, const meshadapt::MovedMesh& moved,
-           const std::vector<std::size_t>& field_count_of, meshadapt::Warnings& warnings) {
-  std::vector<NamedField> all = meshadapt::named_fields(moved.metric, "metric");
-  all.insert(all.end(), moved.fields.begin(), moved.fields.end());
-  meshadapt::WriteOptions as_named;
-  if (holds_fields(job.output)) as_named.fields = all;
-  const std::string ending = job.output.extension().string();
-  as_named.format = ending;
-  as_named.warnings = &warnings;
-  meshadapt::write_mesh(outputs, place_of(job.output), moved.mesh, as_named);
-  if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, moved.metric);
-  job.fields.write(outputs, moved.mesh, moved.fields, field_count_of);
+Json to_json(const Executor& executor, const Run& run, const Warnings& warnings) {
+  const MoveReport& report = run.moved.report;
+  const auto measured = [&](const AnyMesh& mesh, const AnyField& metric) {
+    return to_json(MeasuredMesh{mesh, measure(executor, mesh, &metric)});
+  };
+  return json_lines(
+      {json_object("before", measured(run.before, run.metric)),
+       json_object("after", measured(run.moved.mesh, run.moved.metric)),
+       json_object("share", report.share, "stopped",
+                   report.stopped.empty() ? Json() : Json(report.stopped), "steps", report.steps,
+                   "adaptations", report.adaptations, "adapted_elements", report.adapted_elements,
+                   "worst_quality", report.worst_quality),
+       json_object("threads", executor.threads(), "seconds",
+                   json_object("total", report.total_seconds, "adapting", report.adapt_seconds)),
+       json_object("peak_memory_bytes", runtime::peak_memory()),
+       json_object("warnings", json_list({warnings.begin(), warnings.end()}))});
 }
 
 int work(const Executor& executor, MoveJob job) {
-  meshadapt::Warnings warnings;
-  const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
+  Warnings warnings;
+  const MeshWithFields file = read_mesh_with_fields(job.input, &warnings);
   const CarriedFields::Values given = job.fields.read(file.mesh, warnings);
   const std::vector<NamedField> fields = fields_along(job, file, given.fields, warnings);
   const AnyField displacement = displacement_of(job, file, warnings);
@@ -242,21 +191,20 @@ int work(const Executor& executor, MoveJob job) {
   job.move.fields = fields;
   job.move.carrying.clear();
   for (const NamedField& field : fields) job.move.carrying.push_back(carrying(job, field));
-  meshadapt::MovedMesh moved = meshadapt::move(executor, file.mesh, displacement, job.move);
+  MovedMesh moved = move(executor, file.mesh, displacement, job.move);
   moved.mesh.name = job.output.string();
   warnings.insert(warnings.end(), moved.report.warnings.begin(), moved.report.warnings.end());
   if (!moved.report.stopped.empty())
     warnings.push_back("the way was not gone to its end, " + moved.report.stopped);
   const std::string said = job.verbosity > 0 ? summary(job, moved) : std::string();
-  meshadapt::AtomicOutputs outputs;
-  stage(outputs, job, moved, given.count_of, warnings);
-  if (job.json)
-    put_json(outputs, *job.json, to_json(executor, {file.mesh, metric, moved}, warnings));
-  print_warnings(warnings, job.verbosity);
-  outputs.commit();
+  write_outputs(job,
+                {moved.mesh, moved.metric, moved.fields, given.count_of,
+                 [&] {
+                   return to_json(executor, {file.mesh, metric, moved}, warnings);
+                 }},
+                warnings);
   // From here on no memory is taken, because the outputs are there.
-  const bool taken = is_standard_output(job.output) || job.json == standard_output;
-  std::fputs(said.c_str(), taken ? stderr : stdout);
+  std::fputs(said.c_str(), messages_of(job));
   return moved.report.stopped.empty() ? done : failed;
 }
 

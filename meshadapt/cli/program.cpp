@@ -27,19 +27,16 @@ const Command* find_command(const Program& program, std::string_view name) {
 }
 
 void print_overview(const Program& program, std::FILE* to) {
-  const std::string name(program.name);
-  std::fprintf(to, "%s %s: %s.\n\nCommands:\n", name.c_str(), version,
-               std::string(program.summary).c_str());
+  std::fprintf(to, "%s %s: %s.\n\nCommands:\n", program.name, version, program.summary);
   for (const Command* command : program.commands)
-    std::fprintf(to, "  %s %-8s %s\n", name.c_str(), std::string(command->name).c_str(),
-                 std::string(command->summary).c_str());
+    std::fprintf(to, "  %s %-8s %s\n", program.name, command->name, command->summary);
   std::fprintf(to,
                "  %s help COMMAND  shows its options\n"
                "  %s --version     says which version this is\n\nMeshes:\n",
-               name.c_str(), name.c_str());
-  for (const meshadapt::MeshFormat& format : meshadapt::mesh_formats())
-    std::fprintf(to, "  %-8s %s%s%s\n", std::string(format.ending).c_str(),
-                 std::string(format.what).c_str(), format.holds_fields ? ", with fields" : "",
+               program.name, program.name);
+  for (const MeshFormat& format : mesh_formats())
+    std::fprintf(to, "  %-8s %s%s%s\n", format.ending.data(), format.what.data(),
+                 format.holds_fields ? ", with fields" : "",
                  !format.is_read      ? " (written only)"
                  : !format.is_written ? " (read only)"
                                       : "");
@@ -50,11 +47,9 @@ void print_overview(const Program& program, std::FILE* to) {
 }
 
 void print_help(const Program& program, const Command& command) {
-  std::printf("%s%s %s %s\n%s.\n", std::string(program.launcher).c_str(),
-              std::string(program.name).c_str(), std::string(command.name).c_str(),
-              std::string(command.operands).c_str(), std::string(command.summary).c_str());
-  if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
-  std::printf("\nOptions (one or two dashes mean the same):\n%s",
+  std::printf("%s%s %s %s\n%s.\n%s%s\nOptions (one or two dashes mean the same):\n%s",
+              program.launcher, program.name, command.name, command.operands, command.summary,
+              command.details, *command.details == '\0' ? "" : "\n",
               help_lines(command.options).c_str());
   std::printf("  %-22s %s\n", "-h, --help", "shows this help");
 }
@@ -70,7 +65,7 @@ std::string with_advice(const std::string& message, const std::string& advice) {
   for (const Command* command : program.commands)
     if (edit_distance(name, command->name) <= 2)
       message += "; did you mean '" + std::string(command->name) + "'?";
-  if (meshadapt::format_of(name) != nullptr && find_command(program, "adapt") != nullptr)
+  if (format_of(name) != nullptr && find_command(program, "adapt") != nullptr)
     message += "; did you mean '" + std::string(program.name) + " adapt " + name + "'?";
   throw UsageError(with_advice(message, std::string(program.name) + " help lists the commands"));
 }
@@ -112,7 +107,7 @@ int dispatch(const Program& program, std::span<const std::string> words) {
   }
   const std::string& name = words[0];
   if (name == "--version" || name == "-version") {
-    if (program.speaks) std::printf("%s %s\n", std::string(program.name).c_str(), version);
+    if (program.speaks) std::printf("%s %s\n", program.name, version);
     return done;
   }
   if (name == "help" || name == "--help" || name == "-h")
@@ -130,9 +125,8 @@ int tell(const Program& program, const char* message, int status) noexcept {
   const std::string_view text(message);
   const std::size_t end = std::min(text.find("; "), text.size());
   const bool advises = end < text.size();
-  std::fprintf(stderr, "%.*s: error: %.*s%s%s\n", static_cast<int>(program.name.size()),
-               program.name.data(), static_cast<int>(end), message, advises ? "\n  " : "",
-               advises ? message + end + 2 : "");
+  std::fprintf(stderr, "%s: error: %.*s%s%s\n", program.name, static_cast<int>(end), message,
+               advises ? "\n  " : "", advises ? message + end + 2 : "");
   return status;
 }
 
@@ -148,8 +142,8 @@ int run_words(const Program& program, std::span<const std::string> words) {
     if (known)
       message = with_advice(words[0] + ": " + message,
                             std::string(program.name) + " help " + words[0] + " lists the options");
-    return tell(program, meshadapt::printable(message).c_str(), misused);
-  } catch (const meshadapt::InputError& error) {
+    return tell(program, printable(message).c_str(), misused);
+  } catch (const InputError& error) {
     return tell(program, error.in_file(), misused);
   }
 }

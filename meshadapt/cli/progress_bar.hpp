@@ -25,7 +25,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   /// Shows the bar, the elapsed time and the step, at most twenty times a second.
-  void show(const meshadapt::AdaptProgress& progress) {
+  void show(const AdaptProgress& progress) {
     share_ = share_after(progress);
     const Clock::time_point now = Clock::now();
     if (!shown_ || now - last_ < std::chrono::milliseconds(50)) return;
@@ -40,7 +40,7 @@ class ProgressBar {
   }
 
   /// How much of the bar is full after this step, from 0 to 1.
-  double share_after(const meshadapt::AdaptProgress& progress) {
+  double share_after(const AdaptProgress& progress) {
     if (progress.step != std::string_view("smooth")) {
       changes_ += progress.changes;
       return share_;

@@ -3,24 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 
-#include "files.hpp"
+#include "io/utf8.hpp"
 
 namespace ductile::cli {
 
 namespace {
-
-using meshadapt::Distribution;
-using meshadapt::MeshStatistics;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::string text(256, '\0');
-  const int length = std::snprintf(text.data(), text.size(), pattern, values...);
-  text.resize(static_cast<std::size_t>(std::clamp(length, 0, 255)));
-  return text;
-}
 
 std::string figures(const char* name, const Distribution& d) {
   return format("  %-12s min %.4g, 1 %% below %.4g, median %.4g, mean %.4g, max %.4g\n", name,
@@ -34,47 +24,67 @@ std::string bar(std::size_t count, std::size_t most) {
   return std::string(static_cast<std::size_t>(std::ceil(length)), '#');
 }
 
-std::string histogram_line(const std::string& label, std::size_t count, std::size_t most,
-                           std::size_t total) {
-  return format("    %-16s %12s %6.2f %%  ", label.c_str(), with_commas(count).c_str(),
-                100 * static_cast<double>(count) / static_cast<double>(total)) +
-         bar(count, most) + "\n";
-}
-
 std::string histogram(const Distribution& d) {
   if (d.count == 0) return {};
-  std::size_t most = std::max(d.below, d.above);
-  for (const std::size_t count : d.histogram) most = std::max(most, count);
+  const std::size_t most =
+      std::max({d.below, d.above, *std::max_element(d.histogram.begin(), d.histogram.end())});
   const double width =
       (d.histogram_to - d.histogram_from) / static_cast<double>(d.histogram.size());
   std::string text;
-  if (d.below > 0)
-    text += histogram_line(format("below %.3g", d.histogram_from), d.below, most, d.count);
+  const auto add = [&](const std::string& label, std::size_t count) {
+    if (count > 0)
+      text += format("    %-16s %12s %6.2f %%  ", label.c_str(), with_commas(count).c_str(),
+                     100 * static_cast<double>(count) / static_cast<double>(d.count)) +
+              bar(count, most) + "\n";
+  };
+  add(format("below %.3g", d.histogram_from), d.below);
   for (std::size_t bin = 0; bin < d.histogram.size(); ++bin) {
-    if (d.histogram[bin] == 0) continue;
     const double from = d.histogram_from + width * static_cast<double>(bin);
-    text +=
-        histogram_line(format("%.3g to %.3g", from, from + width), d.histogram[bin], most, d.count);
+    add(format("%.3g to %.3g", from, from + width), d.histogram[bin]);
   }
-  if (d.above > 0)
-    text += histogram_line(format("above %.3g", d.histogram_to), d.above, most, d.count);
+  add(format("above %.3g", d.histogram_to), d.above);
   return text;
 }
 
-std::string json_of(const Distribution& d) {
-  std::string bins;
-  for (const std::size_t count : d.histogram)
-    bins += (bins.empty() ? "" : ", ") + std::to_string(count);
-  return "{\"count\": " + std::to_string(d.count) + ", \"min\": " + json_number(d.min) +
-         ", \"p01\": " + json_number(d.low) + ", \"median\": " + json_number(d.median) +
-         ", \"mean\": " + json_number(d.mean) + ", \"max\": " + json_number(d.max) +
-         ", \"histogram_from\": " + json_number(d.histogram_from) +
-         ", \"histogram_to\": " + json_number(d.histogram_to) + ", \"histogram\": [" + bins +
-         "], \"below\": " + std::to_string(d.below) + ", \"above\": " + std::to_string(d.above) +
-         "}";
+Json to_json(const Distribution& d) {
+  return json_object(
+      "count", d.count, "min", d.min, "p01", d.low, "median", d.median, "mean", d.mean, "max",
+      d.max, "histogram_from", d.histogram_from, "histogram_to", d.histogram_to, "histogram",
+      json_list({d.histogram.begin(), d.histogram.end()}), "below", d.below, "above", d.above);
 }
 
 }  // namespace
+
+// ---- Text ----
+
+std::string format(const char* pattern, ...) {
+  std::array<char, 501> text{};
+  std::va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(text.data(), text.size(), pattern, values);
+  va_end(values);
+  return text.data();
+}
+
+std::string with_commas(std::size_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+std::string counted(std::size_t number, const char* one, const char* many) {
+  return with_commas(number) + " " + (number == 1 ? one : many);
+}
+
+std::string as_utf8(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    result += length > 0 ? text.substr(at, length) : "?";
+    at += std::max<std::size_t>(length, 1);
+  }
+  return result;
+}
 
 std::string to_text(const MeshStatistics& s) {
   std::string text = figures(s.in_metric ? "edge length" : "edge, plain", s.edge_length);
@@ -91,37 +101,59 @@ std::string to_text(const MeshStatistics& s) {
   return text;
 }
 
-std::string to_json(const MeshStatistics& s) {
-  std::string text = std::string("{\"in_metric\": ") + (s.in_metric ? "true" : "false") +
-                     ", \"edge_length\": " + json_of(s.edge_length) +
-                     ", \"quality\": " + json_of(s.quality);
-  if (s.in_metric) {
-    text += ", \"edges_short\": " + std::to_string(s.edges_short) +
-            ", \"edges_in_range\": " + std::to_string(s.edges_in_range) +
-            ", \"edges_long\": " + std::to_string(s.edges_long) +
-            ", \"share_in_range\": " + json_number(s.share_in_range()) +
-            ", \"complexity\": " + json_number(s.complexity);
-  }
-  return text + "}";
+// ---- JSON ----
+
+Json::Json(double number) {
+  char digits[32];
+  if (std::isfinite(number))
+    text.assign(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
 }
 
-std::string json_string(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : as_utf8(text)) {
+Json::Json(std::string_view string) : text("\"") {
+  for (const char c : as_utf8(std::string(string))) {
     if (c == '"' || c == '\\')
-      quoted += std::string("\\") + c;
+      text += std::string("\\") + c;
     else if (static_cast<unsigned char>(c) < 0x20)
-      quoted += format("\\u%04x", c);
+      text += format("\\u%04x", static_cast<unsigned>(c));
     else
-      quoted += c;
+      text += c;
   }
-  return quoted + "\"";
+  text += "\"";
 }
 
-std::string json_number(double number) {
-  if (!std::isfinite(number)) return "null";
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+Json json_list(const std::vector<Json>& values) {
+  Json list;
+  list.text = "[" + listed(values, &Json::text) + "]";
+  return list;
+}
+
+Json json_object(const std::vector<Json>& keys_and_values) {
+  Json object;
+  object.text = "{";
+  for (std::size_t i = 0; i < keys_and_values.size(); ++i)
+    object.text += (i == 0 ? "" : i % 2 == 0 ? ", " : ": ") + keys_and_values[i].text;
+  object.text += "}";
+  return object;
+}
+
+Json json_lines(const std::vector<Json>& objects) {
+  Json lines;
+  lines.text = "{";
+  for (const Json& object : objects)
+    lines.text +=
+        (lines.text.size() == 1 ? "" : ",\n ") + object.text.substr(1, object.text.size() - 2);
+  lines.text += "}\n";
+  return lines;
+}
+
+Json to_json(const MeshStatistics& s) {
+  std::vector<Json> members{"in_metric", s.in_metric,       "edge_length", to_json(s.edge_length),
+                            "quality",   to_json(s.quality)};
+  if (s.in_metric)
+    members.insert(members.end(), {"edges_short", s.edges_short, "edges_in_range", s.edges_in_range,
+                                   "edges_long", s.edges_long, "share_in_range", s.share_in_range(),
+                                   "complexity", s.complexity});
+  return json_object(members);
 }
 
 }  // namespace ductile::cli

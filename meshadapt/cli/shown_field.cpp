@@ -1,29 +1,24 @@
 #include "shown_field.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
 
-#include "arguments.hpp"
 #include "io/number_in.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-using meshadapt::AnyField;
-using meshadapt::NamedField;
-
 /// A number from 1; 0 if the word is none.
-std::size_t number_in(std::string_view word) {
-  return meshadapt::number_in<std::size_t>(word).value_or(0);
+std::size_t place_in_list(std::string_view word) {
+  return number_in<std::size_t>(word).value_or(0);
 }
 
 const NamedField* find(std::string_view word, const std::vector<NamedField>& fields) {
   for (const NamedField& field : fields)
     if (field.name == word) return &field;
-  const std::size_t number = number_in(word);
+  const std::size_t number = place_in_list(word);
   return number >= 1 && number <= fields.size() ? &fields[number - 1] : nullptr;
 }
 
@@ -53,11 +48,11 @@ NamedField shown_field(const std::string& by, const std::vector<NamedField>& fie
   const std::size_t colon = by.rfind(':');
   if (!field && colon != std::string::npos) {
     field = find(by.substr(0, colon), fields);
-    component = number_in(by.substr(colon + 1));
+    component = place_in_list(by.substr(colon + 1));
     if (component == 0) field = nullptr;
   }
   if (!field) refuse(by, fields, where);
-  const auto count = static_cast<std::size_t>(meshadapt::component_count(field->type, dimension));
+  const auto count = static_cast<std::size_t>(component_count(field->type, dimension));
   if (component > count)
     throw UsageError("option --by: expected a component from 1 to " + std::to_string(count) +
                      " of '" + field->name + "', found " + std::to_string(component));

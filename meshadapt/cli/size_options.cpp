@@ -1,11 +1,8 @@
 #include "size_options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -15,19 +12,6 @@ namespace ductile::cli {
 
 namespace {
 
-using meshadapt::AnyMesh;
-using meshadapt::number_in;
-using meshadapt::Vector;
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts;
-  std::size_t from = 0;
-  for (std::size_t to; (to = text.find(at, from)) != std::string::npos; from = to + 1)
-    parts.push_back(text.substr(from, to - from));
-  parts.push_back(text.substr(from));
-  return parts;
-}
-
 /// True for "2", and for "2/0.5", which only a growth can be.
 bool is_numeric(const std::string& text) {
   const auto parts = split(text, '/');
@@ -36,15 +20,15 @@ bool is_numeric(const std::string& text) {
          });
 }
 
-struct Shape {
-  std::string_view name;
-  std::string_view numbers;  ///< what it is given by
-};
-constexpr std::array<Shape, 5> shapes{{{"point", "X,Y,Z (X,Y in 2D)"},
-                                       {"sphere", "X,Y,Z,R (X,Y,R in 2D)"},
-                                       {"box", "two corners, X,Y,Z,X,Y,Z (X,Y,X,Y in 2D)"},
-                                       {"line", "points, X,Y,Z,X,Y,Z,... (X,Y,X,Y,... in 2D)"},
-                                       {"file", "the name of a mesh"}}};
+/// The numbers that give a place of this shape; empty if there is no such shape.
+std::string numbers_of(const std::string& shape) {
+  return shape == "point"    ? "X,Y,Z (X,Y in 2D)"
+         : shape == "sphere" ? "X,Y,Z,R (X,Y,R in 2D)"
+         : shape == "box"    ? "two corners, X,Y,Z,X,Y,Z (X,Y,X,Y in 2D)"
+         : shape == "line"   ? "points, X,Y,Z,X,Y,Z,... (X,Y,X,Y,... in 2D)"
+         : shape == "file"   ? "the name of a mesh"
+                             : "";
+}
 
 [[noreturn]] void refuse(const std::string& words, const std::string& expected) {
   throw UsageError("option " + words + ": expected " + expected);
@@ -52,10 +36,8 @@ constexpr std::array<Shape, 5> shapes{{{"point", "X,Y,Z (X,Y in 2D)"},
 
 /// Reads H[:GROW[:HMAX]] or H:HMAX/DISTANCE.
 void read_growth(const std::string& all, const std::vector<std::string>& fields, double& size,
-                 meshadapt::SizeGrowth& growth) {
-  const auto is_size = [](double x) {
-    return x >= meshadapt::smallest_size && x <= meshadapt::largest_size;
-  };
+                 SizeGrowth& growth) {
+  const auto is_size = [](double x) { return x >= smallest_size && x <= largest_size; };
   size = number_in<double>(fields[0]).value_or(0);
   if (!is_size(size)) refuse(all, "a size from 1e-75 to 1e75, found '" + fields[0] + "'");
   if (fields.size() == 1) return;
@@ -86,11 +68,11 @@ std::vector<Vector<3>> points_of(const std::vector<double>& numbers, std::size_t
 }
 
 /// Triangles of a file, for a mesh of dimension 3; segments otherwise, or if it has no triangles.
-meshadapt::SizePlace place_in(const AnyMesh& file, const AnyMesh& mesh, const std::string& all) {
+SizePlace place_in(const AnyMesh& file, const AnyMesh& mesh, const std::string& all) {
   if (file.dimension != mesh.dimension)
     refuse(all, "a mesh of dimension " + std::to_string(mesh.dimension) +
                     ", not flat, found one of " + std::to_string(file.dimension));
-  meshadapt::TriangleSurface surface;
+  TriangleSurface surface;
   surface.points = points_of(file.coordinates, static_cast<std::size_t>(file.dimension));
   if (mesh.dimension == 3) surface.triangles = file.triangles.vertices;
   if (surface.triangles.empty())
@@ -101,11 +83,44 @@ meshadapt::SizePlace place_in(const AnyMesh& file, const AnyMesh& mesh, const st
 
 }  // namespace
 
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::size_t from = 0;
+  for (std::size_t to; (to = text.find(at, from)) != std::string::npos; from = to + 1)
+    parts.push_back(text.substr(from, to - from));
+  parts.push_back(text.substr(from));
+  return parts;
+}
+
 std::optional<double> size_option(const Arguments& arguments, std::string_view name) {
   const std::optional<double> value = arguments.positive(name);
-  if (value && (*value < meshadapt::smallest_size || *value > meshadapt::largest_size))
+  if (value && (*value < smallest_size || *value > largest_size))
     refuse_value(name, "a size from 1e-75 to 1e75", *arguments.text(name));
   return value;
+}
+
+SizeBounds size_bounds(const Arguments& arguments) {
+  const SizeBounds bounds{size_option(arguments, "-hmin").value_or(0),
+                          size_option(arguments, "-hmax").value_or(0)};
+  if (bounds.largest > 0 && bounds.smallest > bounds.largest)
+    throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
+  return bounds;
+}
+
+double gradation_of(const Arguments& arguments, std::string_view option) {
+  const double factor = arguments.number(option).value_or(0);
+  if (factor > 0 && factor < 1)
+    throw UsageError("option " + std::string(option) +
+                     ": expected a factor of 1 or more, or -1 for none, found '" +
+                     *arguments.text(option) + "'");
+  return std::max(factor, 0.0);
+}
+
+Recovery recovery_in(const Arguments& arguments) {
+  const std::string recovery = arguments.text("--recovery").value_or("least-squares");
+  if (recovery == "projection") return Recovery::double_projection;
+  if (recovery == "least-squares") return Recovery::least_squares;
+  refuse_value("--recovery", "least-squares or projection", recovery);
 }
 
 SizeOptions::SizeOptions(const Arguments& arguments, std::string_view elsewhere)
@@ -137,67 +152,62 @@ SizeOptions::Words SizeOptions::read(const std::string& option, const std::strin
     words.name += (i == named - 1 ? "" : ":") + fields[i];
   if (words.name.empty()) refuse(words.all, "a place, found nothing");
   if (option != "--near") return words;
-  const auto shape = std::find_if(shapes.begin(), shapes.end(),
-                                  [&](const Shape& one) { return one.name == words.shape; });
-  if (shape == shapes.end())
+  const std::string numbers = numbers_of(words.shape);
+  if (numbers.empty())
     refuse(words.all, "point, sphere, box, line or file, found '" + words.shape + "'");
   if (words.shape == "file") return words;
   for (const std::string& text : split(words.name, ',')) {
     const auto number = number_in<double>(text);
     if (!number || !std::isfinite(*number))
-      refuse(words.all, std::string(shape->numbers) + ", found '" + words.name + "'");
+      refuse(words.all, numbers + ", found '" + words.name + "'");
     words.numbers.push_back(*number);
   }
   return words;
 }
 
-std::vector<std::filesystem::path> SizeOptions::inputs() const {
-  std::vector<std::filesystem::path> paths;
+std::vector<fs::path> SizeOptions::inputs() const {
+  std::vector<fs::path> paths;
   for (const Words& words : words_)
     if (words.shape == "file") paths.emplace_back(words.name);
   return paths;
 }
 
-meshadapt::SizePlace SizeOptions::place_of(const Words& words, const AnyMesh& mesh,
-                                           meshadapt::Warnings& warnings) {
+SizePlace SizeOptions::place_of(const Words& words, const AnyMesh& mesh, Warnings& warnings) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   const std::size_t count = words.numbers.size();
   const auto expect = [&](bool good) {
     if (good) return;
-    const auto shape = std::find_if(shapes.begin(), shapes.end(),
-                                    [&](const Shape& one) { return one.name == words.shape; });
-    refuse(words.all, std::string(shape->numbers) + " because the mesh has dimension " +
+    refuse(words.all, numbers_of(words.shape) + " because the mesh has dimension " +
                           std::to_string(dimension) + ", found " + std::to_string(count) +
                           (count == 1 ? " number" : " numbers"));
   };
   if (words.shape == "on" || words.shape == "in") {
     const int of = words.shape == "in" ? mesh.dimension : mesh.dimension - 1;
     if (const auto reference = number_in<std::int32_t>(words.name))
-      return meshadapt::Referenced{of, *reference};
-    return meshadapt::Named{words.name};
+      return Referenced{of, *reference};
+    return Named{words.name};
   }
-  if (words.shape == "file")
-    return place_in(meshadapt::read_mesh(words.name, &warnings), mesh, words.all);
+  if (words.shape == "file") return place_in(read_mesh(words.name, &warnings), mesh, words.all);
   const auto points = points_of(words.numbers, dimension);
   if (words.shape == "point") {
     expect(count == dimension);
-    return meshadapt::Ball{points[0], 0};
+    return Ball{points[0], 0};
   }
   if (words.shape == "sphere") {
     expect(count == dimension + 1);
     if (words.numbers.back() < 0) refuse(words.all, "a radius of 0 or more");
-    return meshadapt::Ball{points[0], words.numbers.back()};
+    return Ball{points[0], words.numbers.back()};
   }
   expect(words.shape == "box" ? count == 2 * dimension : count % dimension == 0);
-  if (words.shape == "line") return meshadapt::Polyline{points};
-  meshadapt::AxisBox box{points[0], points[1]};
+  if (words.shape == "line") return Polyline{points};
+  AxisBox box{points[0], points[1]};
   for (int axis = 0; axis < 3; ++axis)
     if (box.low[axis] > box.high[axis]) std::swap(box.low[axis], box.high[axis]);
   return box;
 }
 
-meshadapt::Sizes SizeOptions::sizes_for(const AnyMesh& mesh, meshadapt::Warnings& warnings) const {
-  meshadapt::Sizes sizes;
+Sizes SizeOptions::sizes_for(const AnyMesh& mesh, Warnings& warnings) const {
+  Sizes sizes;
   sizes.elsewhere = elsewhere_;
   for (const Words& words : words_)
     sizes.sources.push_back(

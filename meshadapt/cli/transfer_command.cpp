@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,18 +11,14 @@
 #include "command.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/transfer.hpp"
+#include "extents.hpp"
 #include "files.hpp"
-#include "run_in_team.hpp"
-#include "same_domain.hpp"
+#include "mesh/array_lengths.hpp"
+#include "report.hpp"
 
 namespace ductile::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
-using meshadapt::Carrying;
-using meshadapt::MeshWithFields;
-using meshadapt::NamedField;
 
 constexpr std::array<Option, 6> options{{
     {"-o", "OUT", "a .sol, or NEW with fields (default: NEW.FIELD.sol, or NEW.o.vtu and the like)",
@@ -38,14 +36,10 @@ struct Job {
   std::vector<std::string> fields;  // files of them, or their names in OLD
   std::vector<std::string> by_value;
   bool interpolate = false, extend = false;
-  int threads = 0, verbosity = 1;
+  int verbosity = 1;
 };
 
 // ---- The command line ----
-
-bool is_field_file(const fs::path& path) {
-  return path.extension() == ".sol" || path.extension() == ".solb";
-}
 
 /// NEW with fields, in its own format or that of the file with the fields, if one of them holds
 /// fields; otherwise the fields alone.
@@ -75,15 +69,11 @@ void set_files(Job& job, const Arguments& arguments) {
   job.fields.assign(words.begin() + 1, words.end() - 1);
   const auto out = arguments.text("-o");
   job.output = out ? output_of(*out) : default_output_of(job);
-  if (!is_field_file(job.output) && !holds_fields(job.output))
-    throw UsageError(
-        "option -o: expected a name ending in .sol or .solb, or of a format that "
-        "holds a mesh and fields, found '" +
-        job.output.string() + "'");
+  expect_fields_held(job.output);
   std::vector<fs::path> inputs{job.from};
   for (const std::string& word : job.fields)
     if (is_file(word)) inputs.emplace_back(word);
-  if (is_field_file(job.output)) inputs.push_back(job.to);
+  if (holds_field(job.output)) inputs.push_back(job.to);
   expect_no_input(job.output, inputs);
 }
 
@@ -93,9 +83,8 @@ Job read_job(const Arguments& arguments) {
   job.by_value = arguments.texts("--by-value");
   job.interpolate = arguments.has("--interpolate");
   job.extend = arguments.has("--extend");
-  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
-  job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
-  meshadapt::check_writable(place_of(job.output));
+  job.verbosity = verbosity_of(arguments);
+  check_writable(place_of(job.output));
   return job;
 }
 
@@ -116,23 +105,22 @@ std::vector<NamedField> called(const std::string& name, const MeshWithFields& fi
   for (const NamedField& field : file.fields)
     if (field.name == name) found.push_back(field);
   if (found.empty())
-    throw meshadapt::InputError(file.mesh.name + ": expected a field '" + name + "', found " +
-                                (file.fields.empty() ? "none" : names_of(file.fields)) +
-                                "; give one of its fields, or a file of fields that is there");
+    throw InputError(file.mesh.name + ": expected a field '" + name + "', found " +
+                     (file.fields.empty() ? "none" : names_of(file.fields)) +
+                     "; give one of its fields, or a file of fields that is there");
   return found;
 }
 
 std::vector<NamedField> chosen_fields(const Job& job, const MeshWithFields& file,
-                                      meshadapt::Warnings& warnings) {
+                                      Warnings& warnings) {
   std::vector<NamedField> fields;
   for (const std::string& word : job.fields)
     append(fields,
            is_file(word) ? read_named_fields(word, file.mesh, warnings) : called(word, file));
   if (job.fields.empty()) append(fields, file.fields);
   if (fields.empty())
-    throw meshadapt::InputError(
-        (job.fields.empty() ? file.mesh.name : job.fields[0]) +
-        ": expected fields, found none; give a file of them between OLD and NEW");
+    throw InputError((job.fields.empty() ? file.mesh.name : job.fields[0]) +
+                     ": expected fields, found none; give a file of them between OLD and NEW");
   return fields;
 }
 
@@ -154,22 +142,135 @@ std::vector<Carrying> ways(const Job& job, const std::vector<NamedField>& fields
   return carrying;
 }
 
+// ---- Whether both meshes cover the same domain ----
+//
+// More fields are carried for that: the positions of the old vertices, which arrive as the closest
+// points of the old mesh, and the sizes of its elements, because facets of a curved boundary are
+// off by a fraction of that.
+
+/// The meshes from and to which fields are carried.
+struct Passage {
+  const AnyMesh &from, &to;
+};
+
+/// Rounding to seven digits leaves this share of a mesh outside of an equal one.
+constexpr double rounding = 1e-6;
+
+void each_element(const AnyMesh& mesh, auto&& visit) {
+  const auto all = [&](const auto& cells) {
+    for (const auto& corners : cells.vertices) visit(std::span<const std::uint32_t>(corners));
+  };
+  mesh.dimension == 2 ? all(mesh.triangles) : all(mesh.tetrahedra);
+}
+
+/// [vertex] The longest edge of the elements around it.
+std::vector<double> sizes_of(const AnyMesh& mesh) {
+  std::vector<double> size_of(mesh.vertex_count());
+  each_element(mesh, [&](std::span<const std::uint32_t> corners) {
+    for (const std::uint32_t a : corners)
+      for (const std::uint32_t b : corners)
+        size_of[a] = std::max(size_of[a], norm(position(mesh, a) - position(mesh, b)));
+  });
+  return size_of;
+}
+
+double volume(const AnyMesh& mesh) {
+  double sum = 0;
+  each_element(mesh,
+               [&](std::span<const std::uint32_t> corners) { sum += measure(mesh, corners); });
+  return sum;
+}
+
+/// "0.3 % of its area".
+std::string share(double part, const AnyMesh& mesh) {
+  return format("%.3g %% of its ", std::min(100.0, 100 * part / volume(mesh))) +
+         (mesh.dimension == 2 ? "area" : "volume");
+}
+
+[[noreturn]] void refuse(const Passage& meshes, const std::string& what) {
+  throw InputError(meshes.to.name + ": " + what + " outside of " + meshes.from.name +
+                   "; give a mesh of the same domain, or --extend to take the closest " +
+                   "values there");
+}
+
+void expect_vertices_inside(const Passage& meshes, const std::vector<double>& closest,
+                            const std::vector<double>& size_of) {
+  constexpr double most = 0.25;
+  double worst = most;
+  std::size_t farthest = meshes.to.vertex_count();
+  const auto outside = [&](std::size_t v) {
+    const auto dimension = static_cast<std::size_t>(meshes.to.dimension);
+    Position gap = position(meshes.to, v);
+    for (std::size_t axis = 0; axis < dimension; ++axis)
+      gap.x[axis] -= closest[v * dimension + axis];
+    return norm(gap);
+  };
+  each_element(meshes.to, [&](std::span<const std::uint32_t> corners) {
+    for (const std::uint32_t v : corners)
+      if (const double d = outside(v); d > worst * size_of[v]) {
+        worst = d / size_of[v];
+        farthest = v;
+      }
+  });
+  if (farthest < meshes.to.vertex_count())
+    refuse(meshes, format("vertex %zu lies %.3g", farthest + 1, outside(farthest)));
+}
+
+/// Appends the additional fields to those of this mesh.
+void add_probes(const AnyMesh& mesh, std::vector<NamedField>& fields,
+                std::vector<Carrying>& carrying) {
+  using Place = NamedField::Place;
+  const bool conservative =
+      std::find(carrying.begin(), carrying.end(), Carrying::conservatively) != carrying.end();
+  fields.push_back({"place", AnyField::Type::vector, mesh.coordinates, Place::vertices});
+  fields.push_back({"size", AnyField::Type::scalar, sizes_of(mesh), Place::vertices});
+  carrying.insert(carrying.end(), 2, Carrying::by_value);
+  if (conservative) return;  // so it is known how much is outside
+  fields.push_back({"volume", AnyField::Type::scalar, std::vector<double>(element_count(mesh)),
+                    Place::elements});
+  carrying.push_back(Carrying::conservatively);
+}
+
+/// Throws InputError if a vertex of the new mesh lies farther outside than a quarter of an element
+/// of the old one, or more than a hundredth of the new mesh does. `first` is the index of what
+/// add_probes() appended.
+void expect_same_domain(const Passage& meshes, const TransferredFields& carried,
+                        std::size_t first) {
+  expect_vertices_inside(meshes, carried.fields[first].values, carried.fields[first + 1].values);
+  if (carried.report.volume_outside > 0.01 * volume(meshes.to))
+    refuse(meshes, share(carried.report.volume_outside, meshes.to) + " lies");
+}
+
+/// Warns if the new mesh is larger, where values are the closest ones.
+void warn_of_extension(const Passage& meshes, const TransferReport& report, Warnings& warnings) {
+  if (report.volume_outside > rounding * volume(meshes.to))
+    warnings.push_back(meshes.to.name + ": " + share(report.volume_outside, meshes.to) +
+                       " is not in " + meshes.from.name + "; values there are the closest ones");
+}
+
+/// Warns if the old mesh is larger, which costs integrals a part.
+void warn_of_loss(const Passage& meshes, const TransferReport& report, Warnings& warnings) {
+  if (report.volume_left_out > rounding * volume(meshes.from))
+    warnings.push_back(meshes.from.name + ": " + share(report.volume_left_out, meshes.from) +
+                       " is not in " + meshes.to.name + "; integrals lose what is there");
+}
+
 // ---- The work ----
 
 std::vector<NamedField> carry(const runtime::Executor& executor, const Job& job,
                               const Passage& meshes, std::vector<NamedField> fields,
-                              meshadapt::Warnings& warnings) {
+                              Warnings& warnings) {
   if (meshes.to.dimension != meshes.from.dimension)
-    throw meshadapt::InputError(
-        meshes.to.name + ": expected a mesh of dimension " + std::to_string(meshes.from.dimension) +
-        ", that of " + meshes.from.name + ", found " + std::to_string(meshes.to.dimension) +
-        "; give a mesh of the same domain");
+    throw InputError(meshes.to.name + ": expected a mesh of dimension " +
+                     std::to_string(meshes.from.dimension) + ", that of " + meshes.from.name +
+                     ", found " + std::to_string(meshes.to.dimension) +
+                     "; give a mesh of the same domain");
   std::vector<Carrying> carrying = ways(job, fields);
   const std::size_t count = fields.size();
   const bool keeps_integrals =
       std::find(carrying.begin(), carrying.end(), Carrying::conservatively) != carrying.end();
   add_probes(meshes.from, fields, carrying);
-  auto carried = meshadapt::transfer_fields(executor, {meshes.from, fields}, meshes.to, carrying);
+  auto carried = transfer_fields(executor, {meshes.from, fields}, meshes.to, carrying);
   if (!job.extend) expect_same_domain(meshes, carried, count);
   warn_of_extension(meshes, carried.report, warnings);
   if (keeps_integrals) warn_of_loss(meshes, carried.report, warnings);
@@ -189,8 +290,7 @@ void add_own_fields(std::vector<NamedField>& carried, std::vector<NamedField> ow
 }
 
 /// Leaves out fields that a .sol cannot hold.
-void keep_those_at_vertices(const Job& job, std::vector<NamedField>& carried,
-                            meshadapt::Warnings& warnings) {
+void keep_those_at_vertices(const Job& job, std::vector<NamedField>& carried, Warnings& warnings) {
   std::vector<NamedField> others;
   for (const NamedField& field : carried)
     if (!is_at_vertices(field)) others.push_back(field);
@@ -198,52 +298,51 @@ void keep_those_at_vertices(const Job& job, std::vector<NamedField>& carried,
   const std::string what = job.output.string() + ": holds fields at vertices only, not " +
                            names_of(others) + " on elements; ";
   if (others.size() == carried.size())
-    throw meshadapt::InputError(what + "give the output a name ending in .vtu");
+    throw InputError(what + "give the output a name ending in .vtu");
   std::erase_if(carried, [](const NamedField& field) { return !is_at_vertices(field); });
   warnings.push_back(what + "a .vtu takes both");
 }
 
-std::string summary(const Job& job, const std::vector<NamedField>& carried,
-                    const meshadapt::AnyMesh& mesh) {
+std::string summary(const Job& job, const std::vector<NamedField>& carried, const AnyMesh& mesh) {
   std::vector<NamedField> at_vertices, on_elements;
   for (const NamedField& field : carried)
     (is_at_vertices(field) ? at_vertices : on_elements).push_back({field.name, field.type, {}, {}});
   std::string text;
   if (!at_vertices.empty())
     text += "at " + counted(mesh.vertex_count(), "vertex", "vertices") + ": " +
-            meshadapt::printable(names_of(at_vertices)) + "\n";
+            printable(names_of(at_vertices)) + "\n";
   if (!on_elements.empty())
     text += "on " +
             (mesh.dimension == 2 ? counted(mesh.triangles.size(), "triangle", "triangles")
                                  : counted(mesh.tetrahedra.size(), "tetrahedron", "tetrahedra")) +
-            ": " + meshadapt::printable(names_of(on_elements)) + "\n";
-  return text + "written: " + meshadapt::printable(place_of(job.output).string()) + "\n";
+            ": " + printable(names_of(on_elements)) + "\n";
+  return text + "written: " + printable(place_of(job.output).string()) + "\n";
 }
 
 /// Writes the output, which appears on commit().
-void stage(meshadapt::AtomicOutputs& outputs, const Job& job, MeshWithFields& to,
-           std::vector<NamedField> carried, meshadapt::Warnings& warnings) {
-  using Form = meshadapt::WriteOptions::Form;
+void stage(AtomicOutputs& outputs, const Job& job, MeshWithFields& to,
+           std::vector<NamedField> carried, Warnings& warnings) {
+  using Form = WriteOptions::Form;
   const std::string ending = job.output.extension().string();
-  if (is_field_file(job.output)) {
-    meshadapt::write_field(outputs, place_of(job.output), side_by_side(carried, to.mesh),
-                           {.form = ending == ".sol" ? Form::ascii : Form::binary});
+  if (holds_field(job.output)) {
+    write_field(outputs, place_of(job.output), side_by_side(carried, to.mesh),
+                {.form = ending == ".sol" ? Form::ascii : Form::binary});
     return;
   }
   add_own_fields(carried, std::move(to.fields));
-  meshadapt::write_mesh(outputs, place_of(job.output), to.mesh,
-                        {.fields = carried, .format = ending, .warnings = &warnings});
+  write_mesh(outputs, place_of(job.output), to.mesh,
+             {.fields = carried, .format = ending, .warnings = &warnings});
 }
 
 int work(const runtime::Executor& executor, const Job& job) {
-  meshadapt::Warnings warnings;
-  const MeshWithFields from = meshadapt::read_mesh_with_fields(job.from, &warnings);
-  MeshWithFields to = meshadapt::read_mesh_with_fields(job.to, &warnings);
+  Warnings warnings;
+  const MeshWithFields from = read_mesh_with_fields(job.from, &warnings);
+  MeshWithFields to = read_mesh_with_fields(job.to, &warnings);
   std::vector<NamedField> carried =
       carry(executor, job, {from.mesh, to.mesh}, chosen_fields(job, from, warnings), warnings);
-  if (is_field_file(job.output)) keep_those_at_vertices(job, carried, warnings);
+  if (holds_field(job.output)) keep_those_at_vertices(job, carried, warnings);
   const std::string said = job.verbosity > 0 ? summary(job, carried, to.mesh) : std::string();
-  meshadapt::AtomicOutputs outputs;
+  AtomicOutputs outputs;
   stage(outputs, job, to, std::move(carried), warnings);
   print_warnings(warnings, job.verbosity);
   outputs.commit();
@@ -254,7 +353,7 @@ int work(const runtime::Executor& executor, const Job& job) {
 
 int run(const Arguments& arguments) {
   const Job job = read_job(arguments);
-  return run_in_team({.threads = job.threads},
+  return run_in_team({.threads = threads_of(arguments)},
                      [&](const runtime::Executor& executor) { return work(executor, job); });
 }
 

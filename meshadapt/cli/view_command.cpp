@@ -10,15 +10,11 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 #include "picture/draw.hpp"
-#include "picture/page.hpp"
-#include "run_in_team.hpp"
 #include "shown_field.hpp"
 
 namespace ductile::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array<Option, 6> options{{
     {"-o", "PICTURE",
@@ -34,11 +30,11 @@ constexpr std::array<Option, 6> options{{
 
 /// Any other word names a field.
 Tint tint_of(const std::string& by) {
-  if (by == "quality") return Tint::quality;
-  if (by == "size") return Tint::size;
-  if (by == "reference") return Tint::reference;
-  if (by == "metric") return Tint::metric;
-  return Tint::field;
+  return by == "quality"     ? Tint::quality
+         : by == "size"      ? Tint::size
+         : by == "reference" ? Tint::reference
+         : by == "metric"    ? Tint::metric
+                             : Tint::field;
 }
 
 int axis_of(const Arguments& arguments) {
@@ -67,7 +63,7 @@ struct Job {
   std::string by;
   std::optional<PictureFormat> format;  ///< none: a page
   SceneOptions scene;
-  int size = 1000, threads = 0;
+  int size = 1000;
 };
 
 Job read_job(const Arguments& arguments) {
@@ -80,31 +76,28 @@ Job read_job(const Arguments& arguments) {
   job.scene = {.tint = tint_of(job.by), .cut_axis = axis_of(arguments)};
   job.format = format_of(job.picture, job.scene.tint);
   job.size = arguments.integer("--size", 50, 8000).value_or(1000);
-  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
-  meshadapt::check_writable(job.picture);
+  check_writable(job.picture);
   return job;
 }
 
 /// The metric of -sol, in which quality is measured; to draw a metric, also the one in the file of
 /// the mesh or beside it.
-std::optional<meshadapt::AnyField> metric_of(const Job& job, const meshadapt::MeshWithFields& file,
-                                             meshadapt::Warnings& warnings) {
+std::optional<AnyField> metric_of(const Job& job, const MeshWithFields& file, Warnings& warnings) {
   if (job.scene.tint == Tint::field) return std::nullopt;
   if (job.sol) return read_metric(*job.sol, file.mesh, warnings);
   if (job.scene.tint != Tint::metric) return std::nullopt;
-  if (const auto metric = metric_in(file)) return meshadapt::metric_of(*metric, file.mesh);
+  if (const auto metric = metric_in(file)) return metric_of(*metric, file.mesh);
   if (const auto beside = metric_beside(job.input))
     return read_metric(*beside, file.mesh, warnings);
-  throw meshadapt::InputError(file.mesh.name +
-                              ": expected a metric (-sol) or one beside it or in it, found none");
+  throw InputError(file.mesh.name +
+                   ": expected a metric (-sol) or one beside it or in it, found none");
 }
 
 /// The field to show, from the file of -sol, otherwise from the mesh, otherwise from the file
 /// beside it.
-meshadapt::NamedField field_of(const Job& job, meshadapt::MeshWithFields& file,
-                               meshadapt::Warnings& warnings) {
+NamedField field_of(const Job& job, MeshWithFields& file, Warnings& warnings) {
   fs::path where = job.input;
-  std::vector<meshadapt::NamedField> fields = std::move(file.fields);
+  std::vector<NamedField> fields = std::move(file.fields);
   if (job.sol)
     where = *job.sol;
   else if (fields.empty())
@@ -114,21 +107,21 @@ meshadapt::NamedField field_of(const Job& job, meshadapt::MeshWithFields& file,
 }
 
 int work(const runtime::Executor& executor, const Job& job) {
-  meshadapt::Warnings warnings;
-  meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
-  const std::optional<meshadapt::AnyField> metric = metric_of(job, file, warnings);
+  Warnings warnings;
+  MeshWithFields file = read_mesh_with_fields(job.input, &warnings);
+  const std::optional<AnyField> metric = metric_of(job, file, warnings);
   SceneOptions options_of_scene = job.scene;
-  meshadapt::NamedField field;
+  NamedField field;
   if (job.scene.tint == Tint::field) {
     field = field_of(job, file, warnings);
     options_of_scene.field = &field;
   }
-  const meshadapt::AnyField* const shown = metric ? &*metric : nullptr;
+  const AnyField* const shown = metric ? &*metric : nullptr;
   const std::string bytes =
       job.format
           ? draw(make_scene(executor, file.mesh, shown, options_of_scene), *job.format, job.size)
           : turning_page(executor, file.mesh, shown, options_of_scene);
-  meshadapt::AtomicOutputs outputs;
+  AtomicOutputs outputs;
   write_bytes(outputs, job.picture, bytes);
   outputs.commit();
   print_warnings(warnings);
@@ -137,7 +130,7 @@ int work(const runtime::Executor& executor, const Job& job) {
 
 int run(const Arguments& arguments) {
   const Job job = read_job(arguments);
-  return run_in_team({.threads = job.threads},
+  return run_in_team({.threads = threads_of(arguments)},
                      [&](const runtime::Executor& executor) { return work(executor, job); });
 }
 

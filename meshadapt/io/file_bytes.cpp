@@ -5,12 +5,10 @@
 #include <cstdio>
 #include <new>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -13,11 +13,14 @@
 
 namespace ductile::meshadapt {
 
+using MeshReader = MeshWithFields(const FileBytes& bytes, Warnings* warnings);
+using MeshWriter = void(AtomicOutputs& outputs, const std::filesystem::path& path,
+                        const AnyMesh& mesh, const WriteOptions& options);
+
 struct FormatRow : MeshFormat {
   bool (*is_it)(std::string_view bytes);  ///< whether a file begins so; null: not by its content
-  MeshWithFields (*read)(const FileBytes& bytes, Warnings* warnings);  ///< null: not read
-  void (*write)(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-                const WriteOptions& options);  ///< null: not written
+  MeshReader* read;                       ///< null: not read
+  MeshWriter* write;                      ///< null: not written
 };
 
 std::span<const FormatRow> format_rows();
@@ -32,73 +35,61 @@ bool is_su2(std::string_view bytes);
 bool is_vtk(std::string_view bytes);
 bool is_vtu(std::string_view bytes);
 
-/// Throws InputError, naming the format and a conversion that works, if the file begins as one of a
-/// format that is known but not read, or its name ends so.
-void refuse_foreign(const FileBytes& bytes);
-
 // ---- Readers; they throw InputError ----
 
-AnyMesh read_gmf(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_gmf;
 
 /// Gmsh's files, versions 2.0 to 2.2 and 4.1, text and binary in either byte order.
-SpatialMesh read_msh(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_msh;
 
 /// Surfaces. Faces of more than three corners are cut into triangles, with a warning. Groups, whose
 /// names become names of references, are references, numbered unless they are called by a number.
-SpatialMesh read_obj(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_obj;
 
 /// Surfaces, text and binary in either byte order; faces may have a property `reference`.
-SpatialMesh read_ply(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_ply;
 
 /// Surfaces, text and binary. Points with the same coordinates become one vertex. Several solids of
 /// a text get the references 1, 2 and so on, and their names.
-SpatialMesh read_stl(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_stl;
 
 /// Facets get the reference of their marker. A marker whose name is a number has that reference.
 /// Others get the numbers 1, 2, 3 and so on that are still free, in the order of the file, and
 /// their names become names of references. Elements have reference 0.
-AnyMesh read_su2(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_su2;
 
 /// VTK's legacy files with an unstructured grid, versions 1 to 5.1, text and binary.
-SpatialMesh read_vtk(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_vtk;
 
 /// VTK's unstructured grids in XML, in all encodings that VTK writes except lz4 and lzma.
-SpatialMesh read_vtu(const FileBytes& bytes, Warnings* warnings);
+MeshReader read_vtu;
 
-// ---- Writers; they stage the file and throw InputError ----
+// ---- Writers of meshes that are fit for a file; they stage it and throw InputError ----
 
-void write_gmf(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_gmf;
 
 /// Versions 2.2 and 4.1, text and binary. References become physical groups and entities of the
 /// geometry with that number; vertices with a reference other than 0 become points.
-void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_msh;
 
 /// The triangles of a surface, or on the boundary of tetrahedra, seen from outside; binary, in
 /// single precision, or text. Throws InputError for meshes of dimension 2, too.
-void write_stl(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_stl;
 
 /// The same, with references as groups by their names, text.
-void write_obj(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_obj;
 
 /// The same, with references as a property of faces; binary, or text.
-void write_ply(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_ply;
 
 /// Each reference of facets becomes a marker, called by its names, several joined by '+', or else
 /// by its number.
-void write_su2(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_su2;
 
 /// Version 4.2, which all readers know, text and binary.
-void write_vtk(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_vtk;
 
 /// With compressed arrays.
-void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const WriteOptions& options);
+MeshWriter write_vtu;
 
 }  // namespace ductile::meshadapt

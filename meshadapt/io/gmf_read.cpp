@@ -1,11 +1,9 @@
-#include <cstdint>
+#include <algorithm>
 #include <new>
 #include <optional>
-#include <string>
 
 #include "formats.hpp"
 #include "gmf_reader.hpp"
-#include "gmf_skip.hpp"
 #include "mesh/flatten.hpp"
 
 namespace ductile::meshadapt::gmf {
@@ -16,6 +14,80 @@ constexpr const char* damaged = "; the file is cut short or damaged, write or co
 /// The wrong dimension shows as a wrong count of vertices.
 std::string dimension_hint(Keyword keyword) {
   return keyword == Keyword::vertices ? " or the Dimension" : "";
+}
+
+// ---- Sections that are not read, whatever is in them: numbers, quoted strings, lines of words
+// ----
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_number(std::string_view word) {
+  return std::any_of(word.begin(), word.end(), is_digit) &&
+         word.find_first_not_of("+-.0123456789eEdD") == std::string_view::npos;
+}
+
+/// True for words that are written for infinite and undefined numbers.
+bool is_no_number(std::string_view word) {
+  std::string lower(word.substr(0, 9));
+  for (char& c : lower) c = static_cast<char>(c | 0x20);
+  return lower == "nan" || lower == "inf" || lower == "infinity";
+}
+
+/// True if a word may name a section of another program: letters, digits, '_' and '-' after a
+/// letter.
+bool is_section_name(std::string_view word) {
+  return !word.empty() && is_letter(word[0]) && !is_no_number(word) &&
+         std::all_of(word.begin(), word.end(),
+                     [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-'; });
+}
+
+/// True if the next word begins a section: nothing, a number or a string follows on its line.
+bool section_ahead(const NumberReader& in) {
+  NumberReader ahead = in;
+  if (!is_section_name(ahead.word())) return false;
+  const char next = ahead.first_on_line();
+  return next == '\0' || is_digit(next) || std::string_view("\"+-.").find(next) < 4;
+}
+
+/// Goes past this many lines of a section of text, which may have any words in them; a keyword
+/// alone, or before a number, is the next section.
+void skip_lines(NumberReader& in, std::uint64_t count) {
+  for (; count > 0 && !in.peek_word().empty(); --count) {
+    if (keyword_named(in.peek_word()) != Keyword::none) {
+      NumberReader ahead = in;
+      ahead.word();
+      const char next = ahead.first_on_line();
+      if (next == '\0' || is_digit(next)) return;
+    }
+    in.skip_line();
+  }
+}
+
+/// Goes on to the next section, or to the end of the file.
+void skip_section(NumberReader& in) {
+  for (;;) {
+    const std::string_view next = in.peek_word();
+    if (next.empty() || section_ahead(in)) return;
+    if (next.starts_with('"'))
+      in.skip_quoted();
+    else if (is_number(next))
+      in.word();
+    else
+      in.skip_line();
+  }
+}
+
+/// Does the same behind the word Geometry, which a name in quotation marks follows. If that is
+/// empty, bamg writes the geometry here, up to its keyword End.
+void skip_geometry(NumberReader& in) {
+  if (in.peek_word() == "\"\"") {
+    in.word();
+    const Keyword next = keyword_named(in.peek_word());
+    if (next == Keyword::version || next == Keyword::dimension)
+      while (!in.peek_word().empty() && keyword_named(in.word()) != Keyword::end) continue;
+  }
+  skip_section(in);
 }
 
 }  // namespace
@@ -40,8 +112,7 @@ void GmfReader::read_text_version() {
   section_.keyword = Keyword::version;
   const std::int64_t version = integer(true);
   if (version < 0 || version > 4)  // bamg and FreeFEM write 0
-    fail("expected version 1 to 4, found " + std::to_string(version) +
-         "; write the file in one of them");
+    fail("expected version 1 to 4, found ", version, "; write the file in one of them");
 }
 
 /// Goes past a section that is not read; refuses cells that a mesh here cannot have.
@@ -97,12 +168,11 @@ void GmfReader::read_text() {
 
 void GmfReader::fail_keyword(std::string_view found, std::string_view similar) const {
   const bool is_number = found.find_first_not_of("+-.0123456789eE") == std::string_view::npos;
-  fail("expected a keyword after " + std::string(name_of(section_.keyword)) + ", found " +
-       quoted(found) +
-       (is_number ? "; the section has more lines than its count says, correct that" +
-                        dimension_hint(section_.keyword)
-        : similar.empty() ? "; correct it, or remove the section"
-                          : "; did you mean " + std::string(similar) + "?"));
+  fail("expected a keyword after ", name_of(section_.keyword), ", found ", quoted(found),
+       is_number ? "; the section has more lines than its count says, correct that" +
+                       dimension_hint(section_.keyword)
+       : similar.empty() ? "; correct it, or remove the section"
+                         : "; did you mean " + std::string(similar) + "?");
 }
 
 // ---- Binary ----
@@ -117,11 +187,8 @@ void GmfReader::read_binary_version() {
   section_.keyword = Keyword::version;
   const std::int64_t version = small_integer();
   if (version < 1 || version > 4)
-    fail("expected version 1 to 4, found " + std::to_string(version) +
-         "; write the file in one of them");
-  single_ = version == 1;
-  far_ = version >= 3;
-  wide_ = version == 4;
+    fail("expected version 1 to 4, found ", version, "; write the file in one of them");
+  sizes_.version = static_cast<int>(version);
 }
 
 Keyword GmfReader::next_section() {
@@ -130,18 +197,18 @@ Keyword GmfReader::next_section() {
   if (ended_ || next_ == 0) return Keyword::none;
   in_.go_to(next_);
   code_ = in_.integer<std::int32_t>("a keyword");
-  if (code_ < 1 || code_ > 1000)
-    fail("expected the number of a keyword, found " + std::to_string(code_) + damaged);
+  if (code_ < 1 || code_ > 1000) fail("expected the number of a keyword, found ", code_, damaged);
   section_.keyword = static_cast<Keyword>(code_);
   ended_ = section_.keyword == Keyword::end;
   if (ended_) return Keyword::end;
-  const std::int64_t next = far_ ? in_.integer<std::int64_t>("the position of the next section")
-                                 : in_.integer<std::int32_t>("the position of the next section");
+  const std::int64_t next = sizes_.position() == 8
+                                ? in_.integer<std::int64_t>("the position of the next section")
+                                : in_.integer<std::int32_t>("the position of the next section");
   const std::size_t least = in_.position();
   if (next != 0 &&
       (next < static_cast<std::int64_t>(least) || static_cast<std::uint64_t>(next) >= size_))
-    fail("expected the position of the next section, from byte " + std::to_string(least) + " to " +
-         std::to_string(size_ - 1) + ", found " + std::to_string(next) + damaged);
+    fail("expected the position of the next section, from byte ", least, " to ", size_ - 1,
+         ", found ", next, damaged);
   next_ = static_cast<std::size_t>(next);
   in_.set_end(next_ == 0 ? size_ : next_);
   return section_.keyword;
@@ -162,9 +229,9 @@ void GmfReader::leave_out_binary(Keyword keyword) {
 void GmfReader::expect_nothing_after_end() {
   // A position may follow End; Mmg leaves it out in solutions.
   const std::size_t left = ended_ ? in_.left() : 0;
-  if (left == 0 || left == (far_ ? 8U : 4U)) return;
+  if (left == 0 || left == sizes_.position()) return;
   in_.go_to(in_.position());
-  fail("expected nothing after the keyword End, found " + std::to_string(left) +
+  fail("expected nothing after the keyword End, found ", left,
        " bytes; remove them or write the file again");
 }
 
@@ -172,8 +239,7 @@ void GmfReader::expect_section_end() {
   if (!in_.is_binary() || in_.left() == 0) return;
   const std::size_t end = in_.position() + in_.left();
   in_.go_to(in_.position());
-  fail("expected the section to end here, as its count says, found its end at byte " +
-       std::to_string(end) + damaged);
+  fail("expected the section to end here, as its count says, found its end at byte ", end, damaged);
 }
 
 void GmfReader::read_binary() {
@@ -204,8 +270,8 @@ std::string GmfReader::where() const {
 }
 
 void GmfReader::fail_number(const std::string& expected, const std::string& found) const {
-  fail("expected " + expected + " in " + record_name(section_, record_) + ", found " + found +
-       (in_.is_binary() ? damaged : "; correct it"));
+  fail("expected ", expected, " in ", record_name(section_, record_), ", found ", found,
+       in_.is_binary() ? damaged : "; correct it");
 }
 
 void GmfReader::fail_word(const std::string& expected) {
@@ -220,22 +286,22 @@ void GmfReader::fail_word(const std::string& expected) {
   const std::string_view found = in_.peek_word();
   if (found.empty()) in_.fail_end(what);
   if (keyword_named(found) != Keyword::none && section_.numbers() != 0)
-    fail("expected " + what + ", found the keyword " + std::string(found) +
-         "; correct the count of " + name + dimension_hint(section_.keyword));
-  fail("expected " + what + ", found " + quoted(found) + "; correct it");
+    fail("expected ", what, ", found the keyword ", found, "; correct the count of ", name,
+         dimension_hint(section_.keyword));
+  fail("expected ", what, ", found ", quoted(found), "; correct it");
 }
 
 }  // namespace ductile::meshadapt::gmf
 
 namespace ductile::meshadapt {
 
-AnyMesh read_gmf(const FileBytes& bytes, Warnings* warnings) {
-  AnyMesh mesh;
-  mesh.name = bytes.name;
-  const gmf::Target target{&mesh, nullptr, warnings};
+MeshWithFields read_gmf(const FileBytes& bytes, Warnings* warnings) {
+  MeshWithFields file;
+  file.mesh.name = bytes.name;
+  const gmf::Target target{&file.mesh, nullptr, warnings};
   gmf::GmfReader(bytes, target).read();
-  flatten(mesh, warnings);
-  return mesh;
+  flatten(file.mesh, warnings);
+  return file;
 }
 
 AnyField read_field(const std::filesystem::path& path, Warnings* warnings,

@@ -15,7 +15,6 @@
 #include "ductile/meshadapt/error.hpp"
 #include "file_bytes.hpp"
 #include "gmf_section.hpp"
-#include "left_out.hpp"
 #include "number_reader.hpp"
 
 namespace ductile::meshadapt::gmf {
@@ -86,6 +85,8 @@ class GmfReader {
   void read_list(std::uint64_t count, std::vector<std::uint32_t>& list);
 
   // ---- Numbers ----
+  /// An integer of the size that the version says; in text of any size.
+  std::int64_t integer() { return integer(sizes_.integer() == 8); }
   std::int64_t integer(bool wide);
   std::int64_t small_integer() { return integer(!in_.is_binary()); }
   std::uint32_t read_index();
@@ -102,7 +103,10 @@ class GmfReader {
   void warn(const std::string& text) const {
     if (target_.warnings) target_.warnings->push_back(printable(text));
   }
-  [[noreturn]] void fail(const std::string& text) const { throw InputError(where() + text); }
+  template <class... Parts>
+  [[noreturn, gnu::noinline]] void fail(const Parts&... parts) const {
+    throw InputError(where() + text_of(parts...));
+  }
   /// The number taken last is not what was expected.
   [[noreturn]] void fail_number(const std::string& expected, const std::string& found) const;
   /// There is no number, or one that does not fit.
@@ -119,9 +123,7 @@ class GmfReader {
   std::size_t next_ = 8;  ///< where the next section begins; 0: there is none
   int code_ = 0;          ///< number of the keyword
   bool ended_ = false;
-  bool single_ = false;  ///< reals have 4 bytes
-  bool wide_ = true;     ///< integers have 8 bytes
-  bool far_ = false;     ///< positions have 8 bytes
+  BinarySizes sizes_{4};
 };
 
 }  // namespace ductile::meshadapt::gmf

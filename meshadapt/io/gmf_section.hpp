@@ -23,6 +23,24 @@ struct Section {
   std::uint64_t numbers() const { return reals + integers; }
 };
 
+/// Sizes of numbers in a binary file of one version.
+struct BinarySizes {
+  int version = 2;
+
+  std::size_t real() const { return version == 1 ? 4 : 8; }
+  std::size_t integer() const { return version == 4 ? 8 : 4; }
+  std::size_t position() const { return version >= 3 ? 8 : 4; }
+  /// Count, head numbers and records.
+  std::size_t contents(const Section& section, std::size_t head_numbers) const {
+    return integer() + 4 * head_numbers +
+           section.count * (section.reals * real() + section.integers * integer());
+  }
+  /// Keyword and position of the next section.
+  std::size_t head() const { return 4 + position(); }
+  /// First and last bytes: two numbers, the section Dimension, the section End.
+  std::size_t frame() const { return 8 + (head() + 4) + head(); }
+};
+
 /// "Triangles 3 of 7", counted from 1 as in the file.
 inline std::string record_name(const Section& section, std::size_t record) {
   return std::string(name_of(section.keyword)) + " " + std::to_string(record + 1) + " of " +

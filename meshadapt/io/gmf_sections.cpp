@@ -22,32 +22,30 @@ void GmfReader::read_dimension() {
   const std::int64_t dimension = small_integer();
   if (target_.dimension() != 0) fail("expected one Dimension, found a second; remove one");
   if (dimension != 2 && dimension != 3)
-    fail("expected Dimension 2 or 3, found " + std::to_string(dimension) +
-         "; only these can be adapted");
+    fail("expected Dimension 2 or 3, found ", dimension, "; only these can be adapted");
   target_.dimension() = static_cast<int>(dimension);
   expect_section_end();
 }
 
 std::uint64_t GmfReader::read_count(Keyword keyword) {
   section_ = {.keyword = keyword};
-  const std::int64_t count = integer(wide_);
+  const std::int64_t count = integer();
   if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
-    fail("expected a count from 0 to 4294967294 of " + std::string(name_of(keyword)) + ", found " +
-         std::to_string(count) + "; correct it");
+    fail("expected a count from 0 to 4294967294 of ", name_of(keyword), ", found ", count,
+         "; correct it");
   return static_cast<std::uint64_t>(count);
 }
 
 void GmfReader::expect_once(Keyword keyword) const {
   const std::string name(name_of(keyword));
   if (target_.dimension() == 0)
-    fail("expected Dimension before " + name + ", found none; put it first");
-  if (find(keyword)) fail("expected one section " + name + ", found a second; join them");
+    fail("expected Dimension before ", name, ", found none; put it first");
+  if (find(keyword)) fail("expected one section ", name, ", found a second; join them");
 }
 
 void GmfReader::refuse_other_cells(Keyword keyword, std::uint64_t count) const {
   if (count != 0 && target_.mesh)
-    fail("expected edges, triangles and tetrahedra only, found " + std::to_string(count) + " " +
-         std::string(name_of(keyword)) +
+    fail("expected edges, triangles and tetrahedra only, found ", count, " ", name_of(keyword),
          " (mixed or unsupported elements); split them into linear simplices first");
 }
 
@@ -58,8 +56,7 @@ void GmfReader::read_section(Keyword keyword) {
   const std::uint64_t count = read_count(keyword);
   section_.count = count;
   if (keyword == Keyword::tetrahedra && count != 0 && target_.dimension() == 2)
-    fail("expected no Tetrahedra in Dimension 2, found " + std::to_string(count) +
-         "; correct the Dimension");
+    fail("expected no Tetrahedra in Dimension 2, found ", count, "; correct the Dimension");
   read_records(keyword, count);
   expect_section_end();
 }
@@ -68,7 +65,7 @@ void GmfReader::begin_records(std::uint64_t reals, std::uint64_t integers) {
   section_.reals = reals;
   section_.integers = integers;
   section_.begin = in_.position();
-  const std::uint64_t bytes = reals * (single_ ? 4 : 8) + integers * (wide_ ? 8 : 4);
+  const std::uint64_t bytes = reals * sizes_.real() + integers * sizes_.integer();
   in_.expect_room(section_.count, {section_.numbers(), bytes},
                   std::string(name_of(section_.keyword)));
   read_.push_back(section_);
@@ -132,15 +129,14 @@ void GmfReader::read_field(std::uint64_t count) {
   AnyField& field = *target_.field;
   const std::int64_t fields = small_integer();
   if (fields < 1 || fields > 1000)
-    fail("expected a number of fields from 1 to 1000, found " + std::to_string(fields) +
-         "; correct it");
+    fail("expected a number of fields from 1 to 1000, found ", fields, "; correct it");
   for (std::int64_t i = 0; i < fields; ++i) {
     const std::int64_t type = small_integer();
     if (type < 1 || type > 4)
       fail(
           "expected a field's type, 1 (scalar), 2 (vector), 3 (symmetric) or 4 (matrix), "
-          "found " +
-          std::to_string(type) + "; correct it");
+          "found ",
+          type, "; correct it");
     field.types.push_back(static_cast<AnyField::Type>(type));
   }
   const std::size_t stride = stride_of(field);
@@ -167,14 +163,14 @@ std::int64_t GmfReader::integer(bool wide) {
 }
 
 std::uint32_t GmfReader::read_index() {
-  const std::int64_t number = integer(wide_);
+  const std::int64_t number = integer();
   if (number < 1 || number >= std::numeric_limits<std::uint32_t>::max()) [[unlikely]]
     fail_number("an index of at least 1", std::to_string(number));
   return static_cast<std::uint32_t>(number - 1);
 }
 
 std::int32_t GmfReader::read_reference() {
-  const std::int64_t number = integer(wide_);
+  const std::int64_t number = integer();
   if (number != static_cast<std::int32_t>(number)) [[unlikely]]
     fail_number("a reference of 32 bits", std::to_string(number));
   return static_cast<std::int32_t>(number);
@@ -183,8 +179,9 @@ std::int32_t GmfReader::read_reference() {
 double GmfReader::read_real(bool infinite) {
   double value = 0;
   float narrow = 0;
-  const bool is_there = single_ ? in_.take(narrow) : in_.take(value);
-  if (single_) value = static_cast<double>(narrow);
+  const bool single = sizes_.real() == 4;
+  const bool is_there = single ? in_.take(narrow) : in_.take(value);
+  if (single) value = static_cast<double>(narrow);
   if (is_there && (std::isfinite(value) || (infinite && !std::isnan(value)))) [[likely]]
     return value;
   const char* const expected = infinite ? "a number" : "a finite number";
@@ -213,11 +210,10 @@ void GmfReader::expect_below(Keyword keyword, const std::uint32_t* indices,
   record_ = at / per_record;
   in_.set_end(size_);  // goes to the number again, for its place in the message
   in_.go_to(section_.begin);
-  for (std::uint64_t n = record_ * section_.numbers() + at % per_record + 1; n > 0; --n)
-    integer(wide_);
-  fail("expected an index up to " + std::to_string(limit) + ", the count of " +
-       std::string(name_of(counted)) + ", in " + record_name(section_, record_) + ", found " +
-       std::to_string(std::uint64_t{*wrong} + 1) + "; correct the index or the count");
+  for (std::uint64_t n = record_ * section_.numbers() + at % per_record + 1; n > 0; --n) integer();
+  fail("expected an index up to ", limit, ", the count of ", name_of(counted), ", in ",
+       record_name(section_, record_), ", found ", std::uint64_t{*wrong} + 1,
+       "; correct the index or the count");
 }
 
 void GmfReader::finish() {

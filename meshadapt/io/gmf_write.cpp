@@ -39,7 +39,6 @@ void expect_range(const std::vector<double>& values, const WriteOptions& options
 }
 
 void expect_fit(const AnyMesh& mesh, const WriteOptions& options) {
-  expect_fit_for_file(mesh, {});
   expect_range(mesh.coordinates, options, name_of(mesh));
   expect(mesh.vertex_count() != 0, name_of(mesh), "expected vertices, found none");
   expect(mesh.dimension == 3 || mesh.tetrahedra.size() == 0, name_of(mesh),
@@ -100,24 +99,6 @@ std::vector<Section> sections_of(const AnyMesh& mesh) {
   return sections;
 }
 
-/// Sizes of numbers in a binary file of one version.
-struct BinarySizes {
-  int version = 2;
-
-  std::size_t real() const { return version == 1 ? 4 : 8; }
-  std::size_t integer() const { return version == 4 ? 8 : 4; }
-  std::size_t position() const { return version >= 3 ? 8 : 4; }
-  /// Count, head numbers and records.
-  std::size_t contents(const Section& section, std::size_t head_numbers) const {
-    return integer() + 4 * head_numbers +
-           section.count * (section.reals * real() + section.integers * integer());
-  }
-  /// Keyword and position of the next section.
-  std::size_t head() const { return 4 + position(); }
-  /// First and last bytes: two numbers, the section Dimension, the section End.
-  std::size_t frame() const { return 8 + (head() + 4) + head(); }
-};
-
 /// Writes sections number by number. Sizes are known in advance, so a binary section begins with
 /// the position of the next one right away.
 class GmfWriter {
@@ -174,7 +155,7 @@ class GmfWriter {
 
   Sink& sink_;
   bool binary_;
-  BinarySizes sizes_;
+  gmf::BinarySizes sizes_;
 };
 
 void put_mesh(GmfWriter&& out, const AnyMesh& mesh) {
@@ -248,7 +229,7 @@ void expect_ending_of_field(WriteOptions& options, const std::filesystem::path& 
 
 int needed_version(const std::vector<Section>& sections, std::size_t head_numbers, Form form) {
   constexpr std::size_t limit = std::numeric_limits<std::int32_t>::max();
-  constexpr BinarySizes sizes{2};
+  constexpr gmf::BinarySizes sizes{2};
   std::size_t bytes = sizes.frame();
   for (const Section& section : sections) {
     if (section.count > limit) return 4;

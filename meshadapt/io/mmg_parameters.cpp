@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/sizes.hpp"
 #include "file_bytes.hpp"
 #include "number_reader.hpp"
+#include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -19,12 +20,12 @@ namespace {
 struct Parameters {
   std::vector<LocalSize> local_sizes;
   std::vector<LevelSetReference> materials;
-  Warnings base_references, level_set_references;  // that they are left out, if they are there
+  bool has_base_references = false;
 };
 
 class Reader {
  public:
-  explicit Reader(const FileBytes& bytes) : bytes_(bytes), in_(bytes, '#') {}
+  explicit Reader(const FileBytes& bytes) : in_(bytes, '#') {}
 
   Parameters read() {
     while (!in_.peek_word().empty()) {
@@ -37,7 +38,7 @@ class Reader {
       else if (keyword == "lsbasereferences")
         leave_out_base_references();
       else
-        in_.fail("expected Parameters or LSReferences, found " + quoted(word) + "; correct it");
+        in_.fail("expected Parameters or LSReferences, found ", quoted(word), "; correct it");
     }
     return std::move(parameters_);
   }
@@ -46,15 +47,13 @@ class Reader {
   std::int64_t count() {
     const auto count = in_.integer<std::int64_t>("the number of references");
     if (count < 0)
-      in_.fail("expected a number of references of 0 or more, found " + std::to_string(count) +
-               "; correct it");
+      in_.fail("expected a number of references of 0 or more, found ", count, "; correct it");
     return count;
   }
 
   double size(const char* expected) {
     const double value = in_.real(expected);
-    if (!std::isfinite(value))
-      in_.fail(std::string("expected ") + expected + ", a finite number; correct it");
+    if (!std::isfinite(value)) in_.fail("expected ", expected, ", a finite number; correct it");
     return std::max(value, 0.0);
   }
 
@@ -84,7 +83,7 @@ class Reader {
     const std::string kind = lower(word);
     for (std::size_t d = 0; d < kinds.size(); ++d)
       if (kind == kinds[d].one || kind == kinds[d].several) return static_cast<int>(d);
-    in_.fail("expected Vertex, Edge, Triangle or Tetrahedron, found " + quoted(word) +
+    in_.fail("expected Vertex, Edge, Triangle or Tetrahedron, found ", quoted(word),
              "; correct it");
   }
 
@@ -94,7 +93,7 @@ class Reader {
       LevelSetReference material;
       material.reference = in_.integer<std::int32_t>("a reference");
       if (!materials_.insert(material.reference).second)
-        in_.fail("expected each reference once, found " + std::to_string(material.reference) +
+        in_.fail("expected each reference once, found ", material.reference,
                  " again; remove one of its entries");
       material.split = lower(in_.peek_word()) != "nosplit";
       if (material.split) {
@@ -105,25 +104,24 @@ class Reader {
       }
       parameters_.materials.push_back(material);
     }
-    parameters_.level_set_references = {bytes_.name +
-                                        ": left out LSReferences, because no level set is cut"};
   }
 
   void leave_out_base_references() {
     const std::int64_t entries = count();
     for (std::int64_t i = 0; i < entries; ++i) in_.integer<std::int32_t>("a reference");
-    parameters_.base_references = {
-        bytes_.name + ": left out LSBaseReferences; small components go wherever they are"};
+    parameters_.has_base_references = true;
   }
 
-  const FileBytes& bytes_;
   NumberReader in_;
   Parameters parameters_;
   std::set<std::int32_t> materials_;
 };
 
-void append(Warnings* to, const Warnings& from) {
-  if (to != nullptr) to->insert(to->end(), from.begin(), from.end());
+void warn_of_base_references(const Parameters& parameters, const FileBytes& bytes,
+                             Warnings* warnings) {
+  if (parameters.has_base_references)
+    warn(warnings,
+         bytes.name + ": left out LSBaseReferences; small components go wherever they are");
 }
 
 }  // namespace
@@ -131,8 +129,9 @@ void append(Warnings* to, const Warnings& from) {
 std::vector<LocalSize> read_local_sizes(const std::filesystem::path& path, Warnings* warnings) {
   const FileBytes bytes = read_bytes(path);
   Parameters parameters = Reader(bytes).read();
-  append(warnings, parameters.level_set_references);
-  append(warnings, parameters.base_references);
+  if (!parameters.materials.empty())
+    warn(warnings, bytes.name + ": left out LSReferences, because no level set is cut");
+  warn_of_base_references(parameters, bytes, warnings);
   return std::move(parameters.local_sizes);
 }
 
@@ -140,7 +139,7 @@ std::vector<LevelSetReference> read_level_set_references(const std::filesystem::
                                                          Warnings* warnings) {
   const FileBytes bytes = read_bytes(path);
   Parameters parameters = Reader(bytes).read();
-  append(warnings, parameters.base_references);
+  warn_of_base_references(parameters, bytes, warnings);
   return std::move(parameters.materials);
 }
 

@@ -1,14 +1,51 @@
 #include "msh_cells.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <string>
-#include <utility>
 
 #include "cell_shapes.hpp"
 
 namespace ductile::meshadapt {
+
+// ---- Numbers of a file ----
+
+NumberIndex::NumberIndex(const std::vector<std::uint64_t>& numbers) {
+  if (numbers.empty()) return;
+  const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
+  first_ = *least;
+  const std::uint64_t range = *most - *least;
+  is_dense_ = range < 4 * numbers.size() + 64;
+  if (is_dense_) {
+    place_of_.assign(static_cast<std::size_t>(range) + 1, none);
+    for (std::size_t place = 0; place < numbers.size(); ++place) {
+      std::size_t& entry = place_of_[static_cast<std::size_t>(numbers[place] - first_)];
+      if (entry != none) repeated_ = place;
+      entry = place;
+    }
+    return;
+  }
+  sorted_.reserve(numbers.size());
+  for (std::size_t place = 0; place < numbers.size(); ++place)
+    sorted_.emplace_back(numbers[place], place);
+  std::sort(sorted_.begin(), sorted_.end());
+  for (std::size_t i = 1; i < sorted_.size(); ++i)
+    if (sorted_[i].first == sorted_[i - 1].first) repeated_ = sorted_[i].second;
+}
+
+std::size_t NumberIndex::find(std::uint64_t number) const {
+  if (is_dense_)
+    return number < first_ || number - first_ >= place_of_.size()
+               ? none
+               : place_of_[static_cast<std::size_t>(number - first_)];
+  const auto found = std::lower_bound(
+      sorted_.begin(), sorted_.end(), number,
+      [](const auto& entry, std::uint64_t wanted) { return entry.first < wanted; });
+  return found == sorted_.end() || found->first != number ? none : found->second;
+}
+
+// ---- Cells ----
+
 int msh_corners(const NumberReader& in, std::int64_t type) {
   const CellShape shape = shape_of(&CellShape::gmsh, type);
   if (shape.corners > 0) return shape.corners;
@@ -22,8 +59,8 @@ int msh_corners(const NumberReader& in, std::int64_t type) {
 std::uint32_t MshCells::vertex(std::uint64_t node) const {
   const std::size_t place = index_of_.find(node);
   if (place == NumberIndex::none)
-    in_.fail("expected the number of a node in $Nodes, found " +
-             std::to_string(static_cast<std::int64_t>(node)) + "; correct it");  // below 0, too
+    in_.fail("expected the number of a node in $Nodes, found ", static_cast<std::int64_t>(node),
+             "; correct it");  // below 0, too
   return static_cast<std::uint32_t>(place);
 }
 
@@ -38,12 +75,6 @@ void MshCells::append(Cells<Corners>& cells, const std::uint64_t* nodes, const M
   repeated_[Corners] = repeated_[Corners] || first.second != set;
 }
 
-void MshCells::append_number(std::vector<std::size_t>& places, std::size_t corners,
-                             std::uint64_t number) {
-  places.push_back(places.size());
-  numbers_[corners].push_back(number);
-}
-
 void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes,
                    const MshGroup& group) {
   if (corners == 1) {
@@ -51,16 +82,12 @@ void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes
     GroupSet groups = groups_[1].set_of(set);
     groups.insert(group.physical.begin(), group.physical.end());
     set = groups_[1].number_of(groups);
-  } else if (corners == 2) {
-    numbers_[2].push_back(number);
-    append(to_.mesh.edges, nodes, group);
-  } else if (corners == 3) {
-    append_number(to_.cell_of_triangle, 3, number);
-    append(to_.mesh.triangles, nodes, group);
-  } else {
-    append_number(to_.cell_of_tetrahedron, 4, number);
-    append(to_.mesh.tetrahedra, nodes, group);
+    return;
   }
+  numbers_.at(static_cast<std::size_t>(corners)).push_back(number);
+  if (corners == 2) append(to_.mesh.edges, nodes, group);
+  if (corners == 3) append(to_.mesh.triangles, nodes, group);
+  if (corners == 4) append(to_.mesh.tetrahedra, nodes, group);
 }
 
 void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
@@ -134,18 +161,21 @@ void MshCells::put_in_order(Cells<Corners>& cells) {
 }
 
 void MshCells::finish() {
-  drop_repeated(to_.mesh.edges);
-  drop_repeated(to_.mesh.triangles);
-  drop_repeated(to_.mesh.tetrahedra);
-  put_in_order(to_.mesh.edges);
-  put_in_order(to_.mesh.triangles);
-  put_in_order(to_.mesh.tetrahedra);
-  to_.cell_of_triangle.resize(to_.mesh.triangles.size());
-  to_.cell_of_tetrahedron.resize(to_.mesh.tetrahedra.size());
+  const auto finish_all = [&]<int Corners>(Cells<Corners>& cells) {
+    drop_repeated(cells);
+    put_in_order(cells);
+    finish(Corners - 1, cells.reference);
+  };
   finish(0, to_.mesh.vertex_reference);
-  finish(1, to_.mesh.edges.reference);
-  finish(2, to_.mesh.triangles.reference);
-  finish(3, to_.mesh.tetrahedra.reference);
+  finish_all(to_.mesh.edges);
+  finish_all(to_.mesh.triangles);
+  finish_all(to_.mesh.tetrahedra);
+  const auto number = [](std::vector<std::size_t>& places, std::size_t count) {
+    places.resize(count);
+    std::iota(places.begin(), places.end(), std::size_t{0});
+  };
+  number(to_.cell_of_triangle, to_.mesh.triangles.size());
+  number(to_.cell_of_tetrahedron, to_.mesh.tetrahedra.size());
 }
 
 }  // namespace ductile::meshadapt

@@ -7,14 +7,36 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "msh_groups.hpp"
-#include "number_index.hpp"
 #include "number_reader.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
+
+/// Finds the place of a number in a list, because files number nodes and elements freely. It takes
+/// memory in proportion to the list.
+class NumberIndex {
+ public:
+  static constexpr std::size_t none = ~std::size_t{0};
+
+  NumberIndex() = default;
+  explicit NumberIndex(const std::vector<std::uint64_t>& numbers);
+
+  /// The place of the number, or none. Thread safety: any thread.
+  std::size_t find(std::uint64_t number) const;
+  /// The place of a number that is in the list twice, or none.
+  std::size_t repeated() const { return repeated_; }
+
+ private:
+  std::uint64_t first_ = 0;
+  bool is_dense_ = true;
+  std::size_t repeated_ = none;
+  std::vector<std::size_t> place_of_;                          ///< [number - first_], if dense
+  std::vector<std::pair<std::uint64_t, std::size_t>> sorted_;  ///< otherwise
+};
 
 /// The shape of Gmsh's elements of a type; throws InputError unless it is a point, line, triangle
 /// or tetrahedron of first order. 1 to 4 corners.
@@ -54,7 +76,6 @@ class MshCells {
   void drop_repeated(Cells<Corners>& cells);
   template <int Corners>
   void put_in_order(Cells<Corners>& cells);
-  void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
 
   const NumberReader& in_;
   SpatialMesh& to_;

@@ -1,10 +1,5 @@
 #include "formats.hpp"
 
-#include <algorithm>
-#include <limits>
-#include <string>
-#include <utility>
-
 #include "msh_reader.hpp"
 
 namespace ductile::meshadapt {
@@ -16,12 +11,12 @@ SpatialMesh MshReader::read() {
     const std::string_view word = in_.word();
     if (word.empty()) break;
     if (word[0] != '$' || word.size() < 2)
-      in_.fail("expected the beginning of a section, such as $Nodes, found " + quoted(word) +
+      in_.fail("expected the beginning of a section, such as $Nodes, found ", quoted(word),
                "; correct it, or the count of the section before");
     const std::string name(word.substr(1, 40));
     in_.line();
     if (version_ == 0 && name != "MeshFormat" && name != "Comments")
-      in_.fail("expected $MeshFormat first, found " + quoted(word) +
+      in_.fail("expected $MeshFormat first, found ", quoted(word),
                "; write the file in version 4.1 or 2.2");
     read_section(name);
   }
@@ -64,7 +59,7 @@ void MshReader::end_section(const std::string& name) {
   const std::string_view word = in_.word();
   if (word.empty()) in_.fail_end("$End" + name);
   if (word != "$End" + name)
-    in_.fail("expected $End" + name + ", found " + quoted(word) +
+    in_.fail("expected $End", name, ", found ", quoted(word),
              "; correct the counts of the section");
 }
 
@@ -76,13 +71,12 @@ void MshReader::read_format() {
   else if (version == "2" || version == "2.0" || version == "2.1" || version == "2.2")
     version_ = 2;
   else
-    in_.fail("expected version 2.2 or 4.1, found " + quoted(version) +
+    in_.fail("expected version 2.2 or 4.1, found ", quoted(version),
              "; write the file in one of them, as with gmsh -format msh41");
   binary_ = in_.integer<int>("whether the file is binary, 0 or 1") != 0;
   const int bytes = in_.integer<int>("the size of numbers, 8");
   if (bytes != 8 && (version_ == 2 || bytes != 4))
-    in_.fail("expected numbers of 8 bytes, found " + std::to_string(bytes) +
-             "; write the file again");
+    in_.fail("expected numbers of 8 bytes, found ", bytes, "; write the file again");
   size_bytes_ = static_cast<std::uint64_t>(bytes);
   if (!binary_) return;
   in_.line();
@@ -90,7 +84,7 @@ void MshReader::read_format() {
   const std::int32_t one = number("the number 1, which tells the byte order");
   swapped_ = one == 0x01000000;
   if (one != 1 && !swapped_)
-    in_.fail("expected the number 1, which tells the byte order, found " + std::to_string(one) +
+    in_.fail("expected the number 1, which tells the byte order, found ", one,
              "; copy the file again");
 }
 
@@ -115,8 +109,8 @@ void MshReader::read_nodes(bool parametric) {
   to_.mesh.vertex_reference.assign(node_numbers_.size(), 0);
   node_index_ = NumberIndex(node_numbers_);
   if (node_index_.repeated() != NumberIndex::none)
-    in_.fail("expected each node once, found node " +
-             std::to_string(node_numbers_[node_index_.repeated()]) + " twice; remove one");
+    in_.fail("expected each node once, found node ", node_numbers_[node_index_.repeated()],
+             " twice; remove one");
 }
 
 void MshReader::read_elements() {
@@ -136,13 +130,12 @@ void MshReader::expect_sections() const {
 }
 
 void MshReader::say_what_is_left_out() {
-  const auto warn = [&](std::size_t count, const std::string& text) {
-    if (warnings_ && count > 0)
-      warnings_->push_back(printable(in_.name() + ": " + std::to_string(count) + text));
-  };
   left_out_.tell(warnings_);
-  warn(between_parts_, " elements between partitions are left out");
-  warn(in_parts_, " elements say which partition they are in, which is left out");
+  const auto tell = [&](std::size_t count, const char* text) {
+    if (count > 0) warn(warnings_, in_.name() + ": " + std::to_string(count) + text);
+  };
+  tell(between_parts_, " elements between partitions are left out");
+  tell(in_parts_, " elements say which partition they are in, which is left out");
 }
 
 // ---- Fields ----
@@ -169,7 +162,7 @@ MshReader::DataHead MshReader::read_data_head() {
 
 void MshReader::read_data(NamedField::Place place, const std::string& section) {
   if (!has_nodes_ || (place == NamedField::Place::elements && !has_elements_))
-    in_.fail("expected $Nodes and $Elements before $" + section + ", found none; put them first");
+    in_.fail("expected $Nodes and $Elements before $", section, ", found none; put them first");
   const DataHead head = read_data_head();
   const bool at_vertices = place == NamedField::Place::vertices;
   const std::size_t wanted = (at_vertices ? node_numbers_ : element_numbers_).size();
@@ -208,8 +201,8 @@ bool is_msh(std::string_view bytes) {
          bytes.starts_with("$NOD");
 }
 
-SpatialMesh read_msh(const FileBytes& bytes, Warnings* warnings) {
-  return MshReader(bytes, warnings).read();
+MeshWithFields read_msh(const FileBytes& bytes, Warnings* warnings) {
+  return finish(MshReader(bytes, warnings).read(), warnings);
 }
 
 }  // namespace ductile::meshadapt

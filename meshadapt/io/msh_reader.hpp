@@ -11,9 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "left_out.hpp"
 #include "msh_cells.hpp"
-#include "number_index.hpp"
 #include "number_reader.hpp"
 #include "spatial_mesh.hpp"
 

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <string>
-#include <utility>
 
 namespace ductile::meshadapt {
 
@@ -52,13 +49,13 @@ void MshReader::read_elements_2(MshCells& cells) {
     if (binary_) {
       const std::int32_t count = number("a number of elements");
       if (count < 1 || static_cast<std::uint64_t>(count) > left)
-        in_.fail("expected 1 to " + std::to_string(left) + " elements of one type, found " +
-                 std::to_string(count) + "; the file is damaged, write or copy it again");
+        in_.fail("expected 1 to ", left, " elements of one type, found ", count,
+                 "; the file is damaged, write or copy it again");
       together = static_cast<std::uint64_t>(count);
     }
     const std::int32_t tags = number("the number of tags");
     if (tags < 0 || tags > 1000000)
-      in_.fail("expected a number of tags, found " + std::to_string(tags) + "; correct it");
+      in_.fail("expected a number of tags, found ", tags, "; correct it");
     for (std::uint64_t i = 0; i < together; ++i) {
       if (binary_) number_of_it = static_cast<std::uint64_t>(number("the number of an element"));
       read_element_2(cells, number_of_it, corners, tags);

@@ -31,7 +31,7 @@ std::size_t msh_point_count(const AnyMesh& mesh) {
                                                                    mesh.vertex_reference.end(), 0));
 }
 
-std::size_t element_count(const AnyMesh& mesh) {
+std::size_t msh_element_count(const AnyMesh& mesh) {
   return msh_point_count(mesh) + mesh.edges.size() + mesh.triangles.size() + mesh.tetrahedra.size();
 }
 
@@ -68,32 +68,6 @@ void put_nodes_2(Sink& sink, const AnyMesh& mesh) {
   end_section(sink, "Nodes");
 }
 
-/// Elements of one type, one after the other, each with a group and an entity.
-class ElementsIn2 {
- public:
-  explicit ElementsIn2(Sink& sink) : sink_(sink) {}
-
-  void begin(int type, std::size_t count) {
-    type_ = type;
-    if (sink_.is_binary() && count > 0)
-      sink_.put(std::int32_t{type}, static_cast<std::int32_t>(count), std::int32_t{2});
-  }
-  template <std::size_t Corners>
-  void put(const std::array<std::uint32_t, Corners>& corners, std::int32_t group,
-           std::int32_t entity) {
-    sink_.put(++number_);
-    if (!sink_.is_binary()) sink_.put(type_, 2);
-    sink_.put(group, entity);
-    for (const std::uint32_t vertex : corners) sink_.put(static_cast<std::int32_t>(vertex + 1));
-    sink_.end_record();
-  }
-
- private:
-  Sink& sink_;
-  int type_ = 0;
-  std::int32_t number_ = 0;
-};
-
 /// Vertices with a reference, as cells.
 Cells<1> points_of(const AnyMesh& mesh) {
   Cells<1> points;
@@ -127,14 +101,20 @@ void put_elements_2(Sink& sink, const AnyMesh& mesh, const GroupsOfReferences& g
   for (const auto& listing : listings)
     for (const auto& cells : listing) total += cells.size();
   sink.write("$Elements\n" + std::to_string(total) + "\n");
-  ElementsIn2 elements(sink);
+  std::int32_t number = 0;
   for (std::size_t n = 0; n < listings.size(); ++n) {
     const auto put = [&](int dimension, int type, const auto& cells) {
       const auto& those = listings[n][static_cast<std::size_t>(dimension)];
-      elements.begin(type, those.size());
+      if (sink.is_binary() && !those.empty())
+        sink.put(type, static_cast<std::int32_t>(those.size()), 2);
       for (const std::size_t cell : those) {
         const std::int32_t reference = cells.reference[cell];
-        elements.put(cells.vertices[cell], groups.of(dimension, reference)[n], reference);
+        sink.put(++number);
+        if (!sink.is_binary()) sink.put(type, 2);
+        sink.put(groups.of(dimension, reference)[n], reference);
+        for (const std::uint32_t vertex : cells.vertices[cell])
+          sink.put(static_cast<std::int32_t>(vertex + 1));
+        sink.end_record();
       }
     };
     put(0, 15, points);
@@ -233,7 +213,7 @@ void put_elements_4(Sink& sink, const AnyMesh& mesh) {
   for_each_msh_cells(mesh, [&](int, int, const auto& cells) {
     blocks += std::set<std::int32_t>(cells.reference.begin(), cells.reference.end()).size();
   });
-  const std::uint64_t count = element_count(mesh);
+  const std::uint64_t count = msh_element_count(mesh);
   sink.write("$Elements\n");
   sink.record(std::uint64_t{blocks}, count, std::uint64_t{1}, count);
   std::uint64_t number = 0;
@@ -267,7 +247,7 @@ void put_field(Sink& sink, const NamedField& field, const AnyMesh& mesh) {
   std::replace(name.begin(), name.end(), '"', ' ');
   sink.write("$" + section + "\n1\n\"" + name + "\"\n1\n0\n3\n0\n" +
              std::to_string(wide.components) + "\n" + std::to_string(count) + "\n");
-  const std::size_t first = at_vertices ? 1 : 1 + element_count(mesh) - count;
+  const std::size_t first = at_vertices ? 1 : 1 + msh_element_count(mesh) - count;
   for (std::size_t i = 0; i < count; ++i) {
     const std::span values(&wide.values[i * wide.components], wide.components);
     sink.record(static_cast<std::int32_t>(first + i), values);
@@ -277,7 +257,7 @@ void put_field(Sink& sink, const NamedField& field, const AnyMesh& mesh) {
 
 void expect_few_enough(const AnyMesh& mesh, const std::filesystem::path& path) {
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() - 1;
-  if (std::max(mesh.vertex_count(), element_count(mesh)) > most)
+  if (std::max(mesh.vertex_count(), msh_element_count(mesh)) > most)
     throw InputError(path.string() +
                      ": too large for this format, whose numbers have 32 bits; write a .meshb");
 }
@@ -289,7 +269,6 @@ void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const 
   if (options.version != 0 && options.version != 2 && options.version != 4)
     throw InputError(path.string() + ": expected version 2 (2.2) or 4 (4.1) to write, found " +
                      std::to_string(options.version));
-  expect_fit_for_file(mesh, options.fields);
   expect_few_enough(mesh, path);
   warn_of_lost(options, path, beside_cells(mesh));
   const bool binary = options.form == WriteOptions::Form::binary, old = options.version == 2;

@@ -1,5 +1,6 @@
 #include "number_reader.hpp"
 
+#include <array>
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
@@ -19,6 +20,39 @@ std::string lower(std::string_view text) {
   for (char& c : result)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return result;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\n\v\f\r";
+  text.remove_prefix(std::min(text.find_first_not_of(blank), text.size()));
+  return text.substr(0, text.find_last_not_of(blank) + 1);
+}
+
+std::string_view from_first_word(std::string_view text, char comment) {
+  NumberReader in(text, "", comment);
+  in.peek_word();
+  return {in.at(), in.left()};
+}
+
+NumberKind number_kind(std::string_view name) {
+  struct Named {
+    NumberKind kind;
+    std::string_view names;
+  };
+  constexpr std::array<Named, 10> kinds{
+      {{{8, true, true}, " Float64 float64 double "},
+       {{4, true, true}, " Float32 float32 float "},
+       {{8, false, true}, " Int64 vtktypeint64 vtkIdType64 long "},
+       {{4, false, true}, " Int32 int32 int vtkIdType "},
+       {{2, false, true}, " Int16 int16 short "},
+       {{1, false, true}, " Int8 int8 char "},
+       {{8, false, false}, " UInt64 vtktypeuint64 unsigned_long "},
+       {{4, false, false}, " UInt32 uint32 uint unsigned_int "},
+       {{2, false, false}, " UInt16 uint16 ushort unsigned_short "},
+       {{1, false, false}, " UInt8 uint8 uchar unsigned_char "}}};
+  for (const auto& [kind, names] : kinds)
+    if (names.find(" " + std::string(name) + " ") != std::string_view::npos) return kind;
+  return {};
 }
 
 NumberReader::NumberReader(std::string_view text, std::string name, char comment)
@@ -80,9 +114,7 @@ std::string NumberReader::quoted_text() {
     text.remove_prefix(open + 1);
     return std::string(text.substr(0, text.find('"')));
   }
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return std::string(text);
+  return std::string(trimmed(text));
 }
 
 bool NumberReader::skip_behind(std::string_view text) {
@@ -96,8 +128,7 @@ bool NumberReader::skip_behind(std::string_view text) {
 std::int64_t NumberReader::integer_within(const char* what, std::int64_t least, std::int64_t most) {
   const auto value = integer<std::int64_t>(what);
   if (value >= least && value <= most) return value;
-  fail(std::string("expected ") + what + ", from " + std::to_string(least) + " to " +
-       std::to_string(most) + ", found " + std::to_string(value) + "; correct it");
+  fail("expected ", what, ", from ", least, " to ", most, ", found ", value, "; correct it");
 }
 
 std::string_view NumberReader::bytes(std::size_t count, const char* what) {
@@ -127,17 +158,40 @@ std::string NumberReader::where() const {
   return name_ + ":" + std::to_string(line + 1) + ": ";
 }
 
-void NumberReader::fail(const std::string& text) const { throw InputError(where() + text); }
+void NumberReader::fail_with(const std::string& text) const { throw InputError(where() + text); }
 
 void NumberReader::fail_end(const std::string& what) const {
-  fail("expected " + what +
+  fail("expected ", what,
        ", found the end of the file; the file is cut short, write or copy it again");
 }
 
 void NumberReader::fail_number(const std::string& what, const char* kind) {
   const std::string_view found = binary_ ? std::string_view() : peek_word();
   if (found.empty()) fail_end(what);
-  fail("expected " + what + ", " + kind + ", found " + quoted(found) + "; correct it");
+  fail("expected ", what, ", ", kind, ", found ", quoted(found), "; correct it");
+}
+
+// ---- What is left out ----
+
+void LeftOut::add_name(std::string_view name, const std::string& note) {
+  constexpr std::size_t longest_name = 40, most_names = 12;
+  std::string text(name.substr(0, longest_name));
+  if (name.size() > longest_name) text += "...";
+  text += note;
+  if (std::find(names_.begin(), names_.end(), text) != names_.end()) return;
+  if (names_.size() < most_names)
+    names_.push_back(text);
+  else
+    ++more_;
+}
+
+void LeftOut::tell(Warnings* warnings) const {
+  if (names_.empty() || !warnings) return;
+  std::string list;
+  for (const std::string& name : names_) list += (list.empty() ? "" : ", ") + name;
+  if (more_ > 0) list += " and " + std::to_string(more_) + " more";
+  warnings->push_back(
+      printable(first_ + "sections that Ductile does not use are left out: " + list));
 }
 
 }  // namespace ductile::meshadapt

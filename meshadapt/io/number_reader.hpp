@@ -6,14 +6,16 @@
 
 #include <algorithm>
 #include <charconv>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <string>
 #include <string_view>
-#include <type_traits>
+#include <vector>
 
+#include "ductile/meshadapt/error.hpp"
 #include "file_bytes.hpp"
 #include "number_in.hpp"
 
@@ -22,6 +24,34 @@ namespace ductile::meshadapt {
 /// A word of a file for a message: never long, without control characters.
 std::string quoted(std::string_view word);
 std::string lower(std::string_view text);
+/// The text without white space at its ends.
+std::string_view trimmed(std::string_view text);
+/// The text from its first word on, behind white space and comments.
+std::string_view from_first_word(std::string_view text, char comment);
+
+/// A kind of number, as files name them; 0 bytes if there is none of that name.
+struct NumberKind {
+  std::size_t bytes = 0;
+  bool is_real = false, is_signed = false;
+};
+/// By its name in VTK's XML, "Float64", in VTK's legacy files, where vtkIdType has 4 bytes, or in
+/// PLY, "double".
+NumberKind number_kind(std::string_view name);
+
+/// Returns visit(Number{}) with a number of this kind.
+auto visit_number(NumberKind kind, auto&& visit) {
+  if (kind.is_real) return kind.bytes == 8 ? visit(double{}) : visit(float{});
+  switch (kind.bytes) {
+    case 8:
+      return kind.is_signed ? visit(std::int64_t{}) : visit(std::uint64_t{});
+    case 4:
+      return kind.is_signed ? visit(std::int32_t{}) : visit(std::uint32_t{});
+    case 2:
+      return kind.is_signed ? visit(std::int16_t{}) : visit(std::uint16_t{});
+    default:
+      return kind.is_signed ? visit(std::int8_t{}) : visit(std::uint8_t{});
+  }
+}
 
 /// The number that these bytes hold; with `swapped`, in the byte order of other machines.
 template <class Number>
@@ -32,6 +62,19 @@ Number loaded(const char* bytes, bool swapped) {
   Number value;
   std::memcpy(&value, raw, sizeof(Number));
   return value;
+}
+
+inline void append_text(std::string& text, std::string_view part) { text += part; }
+inline void append_text(std::string& text, std::integral auto number) {
+  text += std::to_string(number);
+}
+
+/// One text of parts: texts and whole numbers.
+template <class... Parts>
+std::string text_of(const Parts&... parts) {
+  std::string text;
+  (append_text(text, parts), ...);
+  return text;
 }
 
 /// Thread safety: one thread; several readers may go through the same bytes.
@@ -89,6 +132,11 @@ class NumberReader {
       fail_number(what, "a number");
     return value;
   }
+  /// Returns a coordinate that was taken; throws InputError unless it is finite.
+  double finite(double x) const {
+    if (!std::isfinite(x)) fail("expected a finite coordinate, found another; correct it");
+    return x;
+  }
   /// The next `count` bytes as they are.
   std::string_view bytes(std::size_t count, const char* what);
 
@@ -115,7 +163,10 @@ class NumberReader {
   // ---- Messages, about what was taken last ----
   /// "FILE:LINE: ", or "FILE: byte N: " among binary numbers.
   std::string where() const;
-  [[noreturn]] void fail(const std::string& text) const;
+  template <class... Parts>
+  [[noreturn, gnu::noinline]] void fail(const Parts&... parts) const {
+    fail_with(text_of(parts...));
+  }
   /// The end of the file was found where `what` was expected.
   [[noreturn]] void fail_end(const std::string& what) const;
   const std::string& name() const { return name_; }
@@ -133,6 +184,10 @@ class NumberReader {
       else
         return;
   }
+  /// Takes a number that is written in another way, such as 1D-3; not inline, so that take() is.
+  template <class Number>
+  [[gnu::noinline]] bool take_unusual(Number& value);
+  [[noreturn]] void fail_with(const std::string& text) const;
   [[noreturn]] void fail_number(const std::string& what, const char* kind);
 
   const char* begin_;
@@ -147,7 +202,7 @@ class NumberReader {
 };
 
 template <class Number>
-bool NumberReader::take(Number& value) {
+[[gnu::flatten]] bool NumberReader::take(Number& value) {
   if (binary_) {
     last_ = at_;
     if (left() < sizeof(Number)) return false;
@@ -162,6 +217,11 @@ bool NumberReader::take(Number& value) {
     at_ = after;
     return true;
   }
+  return take_unusual(value);
+}
+
+template <class Number>
+bool NumberReader::take_unusual(Number& value) {
   const std::string_view found = peek_word();
   const auto unusual = number_in<Number>(found);
   if (!unusual) return false;
@@ -169,5 +229,26 @@ bool NumberReader::take(Number& value) {
   at_ += found.size();
   return true;
 }
+
+/// Collects the sections of a file that are not read, for one warning about all of them. Thread
+/// safety: one thread.
+class LeftOut {
+ public:
+  /// Adds the section that a reader is at; `note` may say how large it is.
+  void add(const auto& reader, std::string_view name, const std::string& note = "") {
+    if (names_.empty()) first_ = reader.where();  // which counts lines
+    add_name(name, note);
+  }
+  /// Adds the warning "FILE:LINE: sections that Ductile does not use are left out: ...", if there
+  /// were any. `warnings` may be null.
+  void tell(Warnings* warnings) const;
+
+ private:
+  void add_name(std::string_view name, const std::string& note);
+
+  std::string first_;               ///< the place of the first
+  std::vector<std::string> names_;  ///< the first few, each once
+  std::size_t more_ = 0;            ///< others
+};
 
 }  // namespace ductile::meshadapt

@@ -16,10 +16,6 @@ namespace {
 
 using Type = AnyField::Type;
 
-void warn(Warnings* warnings, const std::string& text) {
-  if (warnings) warnings->push_back(printable(text));
-}
-
 /// Flattens a mesh, without a warning if it lies in z = 0: these formats have three coordinates.
 void flatten_quietly(AnyMesh& mesh, Warnings* warnings) {
   bool in_plane = true;
@@ -139,11 +135,6 @@ void expect_text(const std::string& name, std::size_t index) {
   }
 }
 
-std::size_t field_places(const AnyMesh& mesh, NamedField::Place place) {
-  if (place == NamedField::Place::vertices) return mesh.vertex_count();
-  return element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
-}
-
 }  // namespace
 
 MeshWithFields finish(SpatialMesh&& spatial, Warnings* warnings) {
@@ -202,7 +193,8 @@ void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields
     if (number < 1 || number > 4)
       throw InputError(place + ".type: expected 1 to 4, found " + std::to_string(number));
     const std::size_t expected =
-        field_places(mesh, at) * static_cast<std::size_t>(component_count(type, mesh.dimension));
+        (at == NamedField::Place::vertices ? mesh.vertex_count() : element_count(mesh)) *
+        static_cast<std::size_t>(component_count(type, mesh.dimension));
     if (values.size() != expected)
       throw InputError(place + ".values: expected " + std::to_string(expected) +
                        " numbers, found " + std::to_string(values.size()));

@@ -16,6 +16,11 @@
 
 namespace ductile::meshadapt {
 
+/// Adds a warning, if they are wanted.
+inline void warn(Warnings* warnings, const std::string& text) {
+  if (warnings != nullptr) warnings->push_back(printable(text));
+}
+
 /// A field with the number of components that the file says.
 struct SpatialField {
   std::string name;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -13,20 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "left_out.hpp"
 #include "mesh/flatten.hpp"
 #include "number_reader.hpp"
 #include "vtk_cells.hpp"
 
 namespace ductile::meshadapt {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\v\f";
-  const std::size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) + 1 - first);
-}
 
 /// The part of a text before the first of these characters.
 std::string_view before(std::string_view text, std::string_view ends) {
@@ -60,7 +51,7 @@ class Su2Reader {
   template <class Number>
   Number number(const char* what) {
     if (in_.peek_word().data() >= row_end_)
-      in_.fail(std::string("expected ") + what + ", found the end of the line; complete it");
+      in_.fail("expected ", what, ", found the end of the line; complete it");
     if constexpr (std::is_floating_point_v<Number>)
       return in_.real(what);
     else
@@ -74,7 +65,7 @@ class Su2Reader {
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) {
       if (in_unknown_section_) return;
-      in_.fail("expected a keyword such as NPOIN=, found " + quoted(before(line, "\r")) +
+      in_.fail("expected a keyword such as NPOIN=, found ", quoted(before(line, "\r")),
                "; correct it, or the count of the section before");
     }
     const std::string_view key = trimmed(line.substr(0, equals));
@@ -94,15 +85,18 @@ class Su2Reader {
       return true;
     }
     if (key == "IZONE") return true;
-    if (key == "NZONE" && count_of(key, value) != 1)
-      in_.fail("expected one zone, found " + std::string(value) + "; give a file for each zone");
-    if (key == "NDIME") read_dimension(count_of(key, value));
-    if (key == "NPOIN") read_points(count_of(key, value));
-    if (key == "NELEM") read_elements(count_of(key, value));
-    if (key == "NMARK") marker_count_ = count_of(key, value);
-    if (key == "MARKER_ELEMS") read_marker(count_of(key, value));
-    return key == "NZONE" || key == "NDIME" || key == "NPOIN" || key == "NELEM" || key == "NMARK" ||
-           key == "MARKER_ELEMS";
+    constexpr std::array<std::string_view, 6> counts{"NZONE", "NDIME", "NPOIN",
+                                                     "NELEM", "NMARK", "MARKER_ELEMS"};
+    if (std::ranges::find(counts, key) == counts.end()) return false;
+    const std::uint64_t count = count_of(key, value);
+    if (key == "NZONE" && count != 1)
+      in_.fail("expected one zone, found ", value, "; give a file for each zone");
+    if (key == "NDIME") read_dimension(count);
+    if (key == "NPOIN") read_points(count);
+    if (key == "NELEM") read_elements(count);
+    if (key == "NMARK") marker_count_ = count;
+    if (key == "MARKER_ELEMS") read_marker(count);
+    return true;
   }
 
   /// A second number that some programs write behind it, a count without other parts, is ignored.
@@ -110,15 +104,14 @@ class Su2Reader {
     const std::string_view digits = before(value, " \t");
     const auto count = number_in<std::uint64_t>(digits);
     if (!count)
-      in_.fail("expected a number behind " + std::string(key) + "=, found " + quoted(digits) +
-               "; correct it");
+      in_.fail("expected a number behind ", key, "=, found ", quoted(digits), "; correct it");
     return *count;
   }
 
   void read_dimension(std::uint64_t dimension) {
     if (mesh_.dimension != 0) in_.fail("expected one NDIME=, found a second; remove one");
     if (dimension != 2 && dimension != 3)
-      in_.fail("expected dimension 2 or 3, found " + std::to_string(dimension) + "; correct it");
+      in_.fail("expected dimension 2 or 3, found ", dimension, "; correct it");
     mesh_.dimension = static_cast<int>(dimension);
   }
 
@@ -133,11 +126,8 @@ class Su2Reader {
     mesh_.coordinates.reserve(dimension * count);
     for (std::uint64_t i = 0; i < count; ++i) {
       begin_row("a point");
-      for (std::size_t axis = 0; axis < dimension; ++axis) {
-        mesh_.coordinates.push_back(number<double>("a coordinate"));
-        if (!std::isfinite(mesh_.coordinates.back()))
-          in_.fail("expected a finite coordinate, found another; correct it");
-      }
+      for (std::size_t axis = 0; axis < dimension; ++axis)
+        mesh_.coordinates.push_back(in_.finite(number<double>("a coordinate")));
       in_.line();  // which may end with its number
     }
     mesh_.vertex_reference.assign(count, 0);
@@ -175,8 +165,8 @@ class Su2Reader {
     for (std::uint64_t i = 0; i < count; ++i) {
       begin_row(name);
       if (const int found = number<int>("the type of an element"); found != type)
-        in_.fail("expected " + std::string(name) + " (type " + std::to_string(type) +
-                 "), found type " + std::to_string(found) + "; split such elements into simplices");
+        in_.fail("expected ", name, " (type ", type, "), found type ", found,
+                 "; split such elements into simplices");
       std::array<std::uint32_t, Corners> corners;
       for (std::uint32_t& corner : corners) corner = number<std::uint32_t>("a point, from 0");
       to.add(corners, reference);
@@ -189,15 +179,14 @@ class Su2Reader {
   void expect_whole() const {
     const auto expect = [&](bool has, const char* key) {
       if (!has)
-        in_.fail("expected " + std::string(key) +
-                 "=, found none; the file is cut short, write or copy it again");
+        in_.fail("expected ", key, "=, found none; the file is cut short, write or copy it again");
     };
     expect(mesh_.dimension != 0, "NDIME");
     expect(has_elements_, "NELEM");
     expect(has_points_ && mesh_.vertex_count() > 0, "NPOIN");
     if (marker_count_ && *marker_count_ != markers_begun_)
-      in_.fail("expected " + std::to_string(*marker_count_) + " markers, by NMARK=, found " +
-               std::to_string(markers_begun_) + "; correct it, or the file is cut short");
+      in_.fail("expected ", *marker_count_, " markers, by NMARK=, found ", markers_begun_,
+               "; correct it, or the file is cut short");
     expect_in_range(mesh_.edges, "line of a marker");
     expect_in_range(mesh_.triangles, mesh_.dimension == 2 ? "triangle" : "triangle of a marker");
     expect_in_range(mesh_.tetrahedra, "tetrahedron");
@@ -252,23 +241,17 @@ class Su2Reader {
 }  // namespace
 
 bool is_su2(std::string_view bytes) {
-  for (;;) {
-    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos) return false;
-    bytes.remove_prefix(first);
-    if (bytes[0] != '%') break;
-    bytes.remove_prefix(std::min(bytes.find('\n'), bytes.size()));
-  }
+  bytes = from_first_word(bytes, '%');
   if (bytes.find_first_of("=\n") == std::string_view::npos) return false;
   const std::string_view key = trimmed(before(bytes, "=\n"));
   constexpr std::array keys{"NDIME", "NZONE", "IZONE", "NELEM", "NPOIN", "NMARK"};
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-AnyMesh read_su2(const FileBytes& bytes, Warnings* warnings) {
-  AnyMesh mesh = Su2Reader(bytes, warnings).read();
-  flatten(mesh, warnings);
-  return mesh;
+MeshWithFields read_su2(const FileBytes& bytes, Warnings* warnings) {
+  MeshWithFields file{Su2Reader(bytes, warnings).read(), {}};
+  flatten(file.mesh, warnings);
+  return file;
 }
 
 }  // namespace ductile::meshadapt

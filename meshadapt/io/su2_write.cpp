@@ -1,7 +1,6 @@
 #include "formats.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
 #include <set>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/names.hpp"
 #include "number_in.hpp"
 #include "sink.hpp"
 #include "vtk_cells.hpp"
@@ -19,10 +19,7 @@ namespace {
 /// The names of a reference, joined by '+', without white space, at which a marker ends; empty if
 /// there are none.
 std::string plain_name(const AnyMesh& mesh, std::int32_t reference) {
-  std::string text;
-  for (const ReferenceName& name : mesh.names)
-    if (name.dimension == mesh.dimension - 1 && name.reference == reference && !name.name.empty())
-      text += (text.empty() ? "" : "+") + name.name;
+  std::string text = joined_names(mesh, mesh.dimension - 1, reference);
   std::replace_if(
       text.begin(), text.end(),
       [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == '=' || c == '%'; }, '_');
@@ -107,7 +104,6 @@ bool several(const std::vector<std::int32_t>& reference) {
 
 void write_su2(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options) {
-  expect_fit_for_file(mesh, {});
   std::string lost = beside_cells(mesh);
   const bool flat = mesh.dimension == 2;
   if (several(flat ? mesh.triangles.reference : mesh.tetrahedra.reference))

@@ -5,10 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/any_mesh.hpp"
+#include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -46,13 +47,32 @@ inline CellReferences cell_references(const AnyMesh& mesh) {
   return of;
 }
 
+/// Calls put(name, components, values) for each field at a place, with three coordinates. Elements
+/// are the first cells; others get `missing`, or 0 where numbers are whole.
+template <class Put>
+void for_each_vtk_field(const AnyMesh& mesh, std::span<const NamedField> fields,
+                        NamedField::Place place, double missing, const Put& put) {
+  const bool at_vertices = place == NamedField::Place::vertices;
+  const std::size_t count = at_vertices ? mesh.vertex_count() : cell_count(mesh);
+  for (const NamedField& field : fields) {
+    if (field.place != place) continue;
+    SpatialField wide = in_space(field, mesh);
+    if (const auto whole = whole_values(wide, count * wide.components)) {
+      put(field.name, wide.components, *whole);
+      continue;
+    }
+    wide.values.resize(count * wide.components, missing);
+    put(field.name, wide.components, wide.values);
+  }
+}
+
 /// Names of references as VTK's files keep them: "2 10 steel", one on each line.
-inline std::string name_lines(const AnyMesh& mesh) {
-  std::string text;
+inline std::vector<std::uint8_t> name_lines(const AnyMesh& mesh) {
+  std::vector<std::uint8_t> text;
   for (const ReferenceName& name : mesh.names) {
     const std::string line =
         std::to_string(name.dimension) + " " + std::to_string(name.reference) + " " + name.name;
-    for (const char c : line) text.push_back(c == '\n' ? ' ' : c);
+    for (const char c : line) text.push_back(static_cast<std::uint8_t>(c == '\n' ? ' ' : c));
     text.push_back('\n');
   }
   return text;

@@ -2,13 +2,11 @@
 
 #include <zlib.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <new>
 
 #include "ductile/meshadapt/error.hpp"
-#include "number_reader.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -122,36 +120,7 @@ std::string decompressed(ByteStream& bytes, const VtkEncoding& encoding) {
   return result;
 }
 
-template <class Number>
-std::vector<double> converted(std::string_view bytes, bool swapped) {
-  std::vector<double> values(bytes.size() / sizeof(Number));
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = static_cast<double>(loaded<Number>(bytes.data() + i * sizeof(Number), swapped));
-  return values;
-}
-
 }  // namespace
-
-VtkNumber vtk_number(std::string_view type) {
-  struct Named {
-    VtkNumber number;
-    std::string_view names;
-  };
-  constexpr std::array<Named, 10> kinds{
-      {{{8, true, true}, " Float64 double "},
-       {{4, true, true}, " Float32 float "},
-       {{8, false, true}, " Int64 vtktypeint64 vtkIdType64 long "},
-       {{4, false, true}, " Int32 int vtkIdType "},
-       {{2, false, true}, " Int16 short "},
-       {{1, false, true}, " Int8 char "},
-       {{8, false, false}, " UInt64 vtktypeuint64 unsigned_long "},
-       {{4, false, false}, " UInt32 unsigned_int "},
-       {{2, false, false}, " UInt16 unsigned_short "},
-       {{1, false, false}, " UInt8 unsigned_char "}}};
-  for (const auto& [number, names] : kinds)
-    if (names.find(" " + std::string(type) + " ") != std::string_view::npos) return number;
-  return {};
-}
 
 VtkDecoded vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding) {
   ByteStream bytes(encoded, base64);
@@ -169,23 +138,14 @@ VtkDecoded vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding&
   return result;
 }
 
-std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swapped) {
-  if (number.is_real)
-    return number.bytes == 8 ? converted<double>(bytes, swapped) : converted<float>(bytes, swapped);
-  switch (number.bytes) {
-    case 8:
-      return number.is_signed ? converted<std::int64_t>(bytes, swapped)
-                              : converted<std::uint64_t>(bytes, swapped);
-    case 4:
-      return number.is_signed ? converted<std::int32_t>(bytes, swapped)
-                              : converted<std::uint32_t>(bytes, swapped);
-    case 2:
-      return number.is_signed ? converted<std::int16_t>(bytes, swapped)
-                              : converted<std::uint16_t>(bytes, swapped);
-    default:
-      return number.is_signed ? converted<std::int8_t>(bytes, swapped)
-                              : converted<std::uint8_t>(bytes, swapped);
-  }
+std::vector<double> vtk_reals(std::string_view bytes, NumberKind kind, bool swapped) {
+  return visit_number(kind, [&](auto number) {
+    std::vector<double> values(bytes.size() / sizeof number);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] =
+          static_cast<double>(loaded<decltype(number)>(bytes.data() + i * sizeof number, swapped));
+    return values;
+  });
 }
 
 std::vector<double> vtk_reals(std::string_view text) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "number_reader.hpp"
+
 namespace ductile::meshadapt {
 
 /// The encoding of the arrays of a file.
@@ -16,14 +18,6 @@ struct VtkEncoding {
   bool compressed = false;     ///< by zlib
   std::size_t head_bytes = 4;  ///< of the numbers in front of an array, 4 or 8
 };
-
-/// A kind of number by its name in XML, "Float64", or in legacy files, "double", where vtkIdType
-/// has 4 bytes; 0 bytes if there is none of that name.
-struct VtkNumber {
-  std::size_t bytes = 0;
-  bool is_real = false, is_signed = false;
-};
-VtkNumber vtk_number(std::string_view type);
 
 /// The bytes of an array, and how many bytes of the file it takes.
 struct VtkDecoded {
@@ -36,7 +30,7 @@ struct VtkDecoded {
 VtkDecoded vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding);
 
 /// Real numbers, or whole ones, out of their bytes or text. Throw InputError as above.
-std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swapped);
+std::vector<double> vtk_reals(std::string_view bytes, NumberKind kind, bool swapped);
 std::vector<double> vtk_reals(std::string_view text);
 
 }  // namespace ductile::meshadapt

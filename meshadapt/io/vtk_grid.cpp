@@ -15,18 +15,18 @@
 namespace ductile::meshadapt {
 namespace {
 
-[[noreturn]] void fail(const VtkGrid& grid, const std::string& text) {
-  throw InputError(grid.name + ": " + text);
+template <class... Parts>
+[[noreturn, gnu::noinline]] void fail(const VtkGrid& grid, const Parts&... parts) {
+  throw InputError(text_of(grid.name, ": ", parts...));
 }
 
 std::size_t vtk_corners(const VtkGrid& grid, std::size_t cell) {
   const CellShape shape = shape_of(&CellShape::vtk, grid.types[cell]);
   if (shape.corners > 0) return static_cast<std::size_t>(shape.corners);
-  fail(grid, "expected vertices, lines, triangles and tetrahedra, found " +
-                 std::string(shape.name) + " (type " + std::to_string(grid.types[cell]) +
-                 ") in cell " + std::to_string(cell + 1) +
-                 "; split such cells into linear simplices first, as ParaView's Tetrahedralize "
-                 "does");
+  fail(grid, "expected vertices, lines, triangles and tetrahedra, found ", shape.name, " (type ",
+       grid.types[cell], ") in cell ", cell + 1,
+       "; split such cells into linear simplices first, as ParaView's Tetrahedralize "
+       "does");
 }
 
 // ---- References ----
@@ -93,14 +93,14 @@ void expect_cell(const VtkGrid& grid, std::size_t cell, std::size_t begin, std::
   const std::string which = "cell " + std::to_string(cell + 1);
   if (end < 0 || static_cast<std::uint64_t>(end) > grid.connectivity.size() ||
       static_cast<std::uint64_t>(end) != begin + corners)
-    fail(grid, "expected " + std::to_string(corners) + " points in " + which +
-                   ", found an end of its list that does not fit; the file is damaged, write it "
-                   "again");
+    fail(grid, "expected ", corners, " points in ", which,
+         ", found an end of its list that does not fit; the file is damaged, write it "
+         "again");
   const std::size_t points = grid.points.size() / 3;
   for (std::size_t i = begin; i < begin + corners; ++i)
     if (grid.connectivity[i] < 0 || static_cast<std::uint64_t>(grid.connectivity[i]) >= points)
-      fail(grid, "expected points from 0 to " + std::to_string(points - 1) + " in " + which +
-                     ", found " + std::to_string(grid.connectivity[i]) + "; correct it");
+      fail(grid, "expected points from 0 to ", points - 1, " in ", which, ", found ",
+           grid.connectivity[i], "; correct it");
 }
 
 void take_cells(SpatialMesh& to, const VtkGrid& grid, const CellReferences& of) {
@@ -140,9 +140,8 @@ void expect_lengths(const VtkGrid& grid) {
   if (points >= std::numeric_limits<std::uint32_t>::max())
     fail(grid, "expected fewer than 4294967295 points, found more; take a smaller mesh");
   if (grid.ends.size() != grid.types.size())
-    fail(grid, "expected as many ends of cells as types, found " +
-                   std::to_string(grid.ends.size()) + " and " + std::to_string(grid.types.size()) +
-                   "; the file is damaged, write it again");
+    fail(grid, "expected as many ends of cells as types, found ", grid.ends.size(), " and ",
+         grid.types.size(), "; the file is damaged, write it again");
 }
 
 /// Takes "2 10 steel" as a name; other lines are no names of references.

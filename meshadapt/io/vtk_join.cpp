@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
+#include "number_reader.hpp"
+#include "point_map.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -50,16 +52,18 @@ class PieceJoiner {
   }
 
  private:
-  /// A point of a piece; points with the same key are the same.
-  struct Point {
-    std::array<double, 3> key;
-    std::uint32_t piece = 0;
-    std::size_t index = 0;
+  /// Points that are the same so far: their number, and the last of them.
+  struct Known {
+    std::int64_t number;
+    std::size_t piece, index;
+    std::size_t before = 0;  ///< the one before the last, in the same piece
+    bool is_doubled = false, is_shared = false;
   };
 
-  [[noreturn]] void fail(std::size_t piece, const std::string& text) const {
-    throw InputError(result_.name + ": piece " + std::to_string(piece + 1) +
-                     ", empty ones not counted: " + text);
+  template <class... Parts>
+  [[noreturn, gnu::noinline]] void fail(std::size_t piece, const Parts&... parts) const {
+    throw InputError(
+        text_of(result_.name, ": piece ", piece + 1, ", empty ones not counted: ", parts...));
   }
 
   static void begin_arrays(std::vector<VtkArray>& to, const std::vector<VtkArray>& from) {
@@ -76,15 +80,13 @@ class PieceJoiner {
     for (const VtkArray& like : first) {
       const VtkArray* const found = array_named(arrays, like.name);
       if (found == nullptr || found->components != like.components)
-        fail(piece, "expected the array '" + like.name + "' with " +
-                        std::to_string(like.components) +
-                        " components, as in the first piece, found none; write it in all pieces");
+        fail(piece, "expected the array '", like.name, "' with ", like.components,
+             " components, as in the first piece, found none; write it in all pieces");
     }
     if (std::ssize(arrays) - special != std::ssize(first))
-      fail(piece, "expected " + std::to_string(first.size()) +
-                      " arrays at points or cells, as in the first piece, found " +
-                      std::to_string(std::ssize(arrays) - special) +
-                      "; write the same in all pieces");
+      fail(piece, "expected ", first.size(),
+           " arrays at points or cells, as in the first piece, found ",
+           std::ssize(arrays) - special, "; write the same in all pieces");
   }
 
   /// Appends the values of entity i of a piece to arrays of the result.
@@ -97,61 +99,49 @@ class PieceJoiner {
     }
   }
 
-  std::vector<Point> all_points() const {
-    std::vector<Point> points;
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      const VtkGrid& piece = pieces_[p];
-      const VtkArray* const numbers = array_named(piece.point_data, numbers_name);
-      for (std::size_t i = 0; i < piece.points.size() / 3; ++i) {
-        Point point{{}, static_cast<std::uint32_t>(p), i};
-        for (std::size_t k = 0; k < 3; ++k)
-          point.key[k] = has_numbers_ ? (k == 0 ? numbers->values[i] : 0) : piece.points[3 * i + k];
-        if (!std::all_of(point.key.begin(), point.key.end(), [](double x) { return x - x == 0; }))
-          fail(p, "expected finite coordinates of point " + std::to_string(i + 1) +
-                      ", found others; write the file again");
-        points.push_back(point);
-      }
-    }
-    return points;
+  /// Points with the same key are the same.
+  std::array<double, 3> key_of(std::size_t p, std::size_t i) const {
+    const VtkGrid& piece = pieces_[p];
+    std::array<double, 3> key{};
+    if (has_numbers_)
+      key[0] = array_named(piece.point_data, numbers_name)->values[i];
+    else
+      std::copy_n(&piece.points[3 * i], 3, key.begin());
+    if (!std::all_of(key.begin(), key.end(), [](double x) { return x - x == 0; }))
+      fail(p, "expected finite coordinates of point ", i + 1,
+           ", found others; write the file again");
+    return key;
   }
 
   /// Numbers points in the order of pieces; a shared point has its number from the first.
   void find_points() {
-    std::vector<Point> points = all_points();
-    std::stable_sort(points.begin(), points.end(),
-                     [](const Point& a, const Point& b) { return a.key < b.key; });
-    std::vector<std::vector<const Point*>> first_of(pieces_.size());  // [piece][point]
+    PointMap<Known> known_at;
     number_of_.resize(pieces_.size());
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      first_of[p].resize(pieces_[p].points.size() / 3);
-      number_of_[p].resize(first_of[p].size());
-    }
-    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
-      while (end < points.size() && points[end].key == points[begin].key) ++end;
-      expect_once_each(points, begin, end);
-      const bool alone = points[begin].piece == points[end - 1].piece && !has_numbers_;
-      for (std::size_t i = begin; i < end; ++i)
-        first_of[points[i].piece][points[i].index] = &points[alone ? i : begin];
-    }
     for (std::size_t p = 0; p < pieces_.size(); ++p)
-      for (std::size_t i = 0; i < first_of[p].size(); ++i) {
-        const Point& first = *first_of[p][i];
-        const bool is_new = first.piece == p && first.index == i;
-        number_of_[p][i] = is_new ? add_point(p, i) : number_of_[first.piece][first.index];
+      for (std::size_t i = 0; i < pieces_[p].points.size() / 3; ++i) {
+        const auto [at, is_new] = known_at.try_emplace(key_of(p, i), Known{0, p, i});
+        number_of_[p].push_back(is_new ? at->second.number = add_point(p, i)
+                                       : number_of_known(at->second, p, i));
       }
   }
 
-  /// A piece with two points at one place, for example at a crack, does not tell which of them is
-  /// that of another piece.
-  void expect_once_each(const std::vector<Point>& points, std::size_t begin,
-                        std::size_t end) const {
-    if (has_numbers_ || points[begin].piece == points[end - 1].piece) return;
-    for (std::size_t i = begin + 1; i < end; ++i)
-      if (points[i].piece == points[i - 1].piece)
-        fail(points[i].piece, "expected one point at the place of another piece's, found points " +
-                                  std::to_string(points[i - 1].index + 1) + " and " +
-                                  std::to_string(points[i].index + 1) +
-                                  "; write the array GlobalPointIds at the points of all pieces");
+  /// The number of a point at the place of known ones. Without numbers in the file, those of one
+  /// piece are not joined; a piece with two points at one place, for example at a crack, does not
+  /// tell which of them is that of another piece.
+  std::int64_t number_of_known(Known& known, std::size_t p, std::size_t i) {
+    if (has_numbers_) return known.number;
+    const bool again = known.piece == p;
+    if (again) known.before = known.index;
+    known.is_doubled |= again;
+    known.is_shared |= !again;
+    if (known.is_doubled && known.is_shared)
+      fail(again ? p : known.piece,
+           "expected one point at the place of another piece's, found points ", known.before + 1,
+           " and ", (again ? i : known.index) + 1,
+           "; write the array GlobalPointIds at the points of all pieces");
+    known.piece = p;
+    known.index = i;
+    return again ? add_point(p, i) : known.number;
   }
 
   std::int64_t add_point(std::size_t p, std::size_t i) {
@@ -168,9 +158,8 @@ class PieceJoiner {
     for (std::size_t cell = 0; cell < piece.ends.size(); ++cell) {
       const auto end = static_cast<std::size_t>(piece.ends[cell]);
       if (piece.ends[cell] < 0 || end < begin || end > piece.connectivity.size())
-        fail(p, "expected ends of cells in ascending order, found " +
-                    std::to_string(piece.ends[cell]) + " at cell " + std::to_string(cell + 1) +
-                    "; the file is damaged, write it again");
+        fail(p, "expected ends of cells in ascending order, found ", piece.ends[cell], " at cell ",
+             cell + 1, "; the file is damaged, write it again");
       const double ghost = ghosts != nullptr && ghosts->components == 1 ? ghosts->values[cell] : 0;
       const bool is_copy = ghost >= 1 && ghost < 256 && static_cast<int>(ghost) % 2 == 1;
       if (!is_copy) add_cell(p, cell, begin, end);
@@ -183,9 +172,8 @@ class PieceJoiner {
     for (std::size_t i = begin; i < end; ++i) {
       const std::int64_t point = piece.connectivity[i];
       if (point < 0 || static_cast<std::size_t>(point) >= number_of_[p].size())
-        fail(p, "expected points from 0 to " + std::to_string(std::ssize(number_of_[p]) - 1) +
-                    " in cell " + std::to_string(cell + 1) + ", found " + std::to_string(point) +
-                    "; correct it");
+        fail(p, "expected points from 0 to ", std::ssize(number_of_[p]) - 1, " in cell ", cell + 1,
+             ", found ", point, "; correct it");
       result_.connectivity.push_back(number_of_[p][static_cast<std::size_t>(point)]);
     }
     result_.ends.push_back(static_cast<std::int64_t>(result_.connectivity.size()));

@@ -1,9 +1,7 @@
 #include "formats.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -17,6 +15,8 @@
 
 namespace ductile::meshadapt {
 namespace {
+
+constexpr bool vtk_swapped = std::endian::native == std::endian::little;
 
 /// Decodes a name in which spaces and the like are written as %20.
 std::string decoded_name(std::string_view text) {
@@ -61,23 +61,26 @@ class VtkReader {
     constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max() / 16;
     return static_cast<std::uint64_t>(in_.integer_within(what, 0, most));
   }
-  /// Numbers follow on the next line.
+  /// Numbers follow here, or on the next line.
+  void begin_numbers_here() {
+    if (binary_) in_.set_binary(vtk_swapped);
+  }
   void begin_numbers() {
     in_.line();
-    if (binary_) in_.set_binary(std::endian::native == std::endian::little);
+    begin_numbers_here();
   }
   void read_head() {
     in_.line();
     in_.line();  // a title
     const std::string_view form = in_.word();
     if (form != "ASCII" && form != "BINARY")
-      in_.fail("expected ASCII or BINARY, found " + quoted(form) + "; write the file again");
+      in_.fail("expected ASCII or BINARY, found ", quoted(form), "; write the file again");
     binary_ = form == "BINARY";
   }
 
   void begin_part(const std::string& word) {
     if (!parts_.try_emplace(word, Part{in_.where(), 0}).second)
-      in_.fail("expected one part " + word + ", found a second; remove one, or join them");
+      in_.fail("expected one part ", word, ", found a second; remove one, or join them");
   }
 
   /// Compares the counts of parts when all have been read, because they come in any order.
@@ -100,7 +103,7 @@ class VtkReader {
       begin_part(word);
     if (word == "DATASET") {
       if (const std::string_view kind = in_.word(); kind != "UNSTRUCTURED_GRID")
-        in_.fail("expected DATASET UNSTRUCTURED_GRID, found " + quoted(kind) +
+        in_.fail("expected DATASET UNSTRUCTURED_GRID, found ", quoted(kind),
                  "; write an unstructured grid");
     } else if (word == "POINTS") {
       read_points();
@@ -141,20 +144,19 @@ class VtkReader {
     const std::uint64_t cells = count("a count of cells"), size = count("a count of numbers");
     in_.line();
     if (in_.peek_word() == "OFFSETS") return read_cells_with_offsets(cells, size);
-    if (binary_) in_.set_binary(std::endian::native == std::endian::little);
+    begin_numbers_here();
     const std::vector<std::int64_t> list = indices(size, false);
     grid_.connectivity.reserve(list.size());
     for (std::size_t at = 0; at < list.size();) {
       const std::int64_t corners = list[at++];
       if (corners < 0 || static_cast<std::uint64_t>(corners) > list.size() - at)
-        in_.fail("expected the points of a cell, found a count of " + std::to_string(corners) +
+        in_.fail("expected the points of a cell, found a count of ", corners,
                  " that does not fit; correct the list");
       for (std::int64_t i = 0; i < corners; ++i) grid_.connectivity.push_back(list[at++]);
       grid_.ends.push_back(static_cast<std::int64_t>(grid_.connectivity.size()));
     }
     if (grid_.ends.size() != cells)
-      in_.fail("expected " + std::to_string(cells) + " cells, found " +
-               std::to_string(grid_.ends.size()) + "; correct the count");
+      in_.fail("expected ", cells, " cells, found ", grid_.ends.size(), "; correct the count");
   }
 
   /// Reads cells of version 5.1: the offset of each, the end of the last one, then the points.
@@ -165,7 +167,7 @@ class VtkReader {
     grid_.ends = indices(offsets, wide);
     if (!grid_.ends.empty()) grid_.ends.erase(grid_.ends.begin());
     if (const std::string_view word = in_.word(); word != "CONNECTIVITY")
-      in_.fail("expected CONNECTIVITY, found " + meshadapt::quoted(word) +
+      in_.fail("expected CONNECTIVITY, found ", meshadapt::quoted(word),
                "; correct the count of offsets");
     wide = in_.word() == "vtktypeint64";
     begin_numbers();
@@ -180,17 +182,16 @@ class VtkReader {
   }
 
   std::vector<double> values(std::uint64_t how_many, const std::string& type) {
-    const VtkNumber number = vtk_number(type);
+    const NumberKind number = number_kind(type);
     if (number.bytes == 0)
-      in_.fail("expected a type of numbers, such as double, found " + meshadapt::quoted(type) +
+      in_.fail("expected a type of numbers, such as double, found ", meshadapt::quoted(type),
                "; write the array in another");
     in_.expect_room(how_many, {1, number.bytes}, "numbers");
     whole_ = !number.is_real;
     std::vector<double> result;
     if (binary_) {
       const auto size = static_cast<std::size_t>(how_many * number.bytes);
-      result = vtk_reals(in_.bytes(size, "an array"), number,
-                         std::endian::native == std::endian::little);
+      result = vtk_reals(in_.bytes(size, "an array"), number, vtk_swapped);
     } else {
       result.resize(static_cast<std::size_t>(how_many));
       for (double& value : result) value = in_.real("a number of an array");
@@ -217,8 +218,12 @@ class VtkReader {
     in_.set_text();
   }
 
-  void keep(std::string name, std::uint64_t components, std::vector<double> found) {
-    if (data_ == Data::none || found.size() != components * data_count_) return;
+  /// Reads an array, and keeps it unless it belongs to nothing.
+  void read_array(std::string name, std::uint64_t components, std::uint64_t tuples,
+                  const std::string& type) {
+    in_.expect_room(tuples, {components, components}, "values");
+    std::vector<double> found = values(tuples * components, type);
+    if (data_ == Data::none || tuples != data_count_) return;
     auto& arrays = data_ == Data::points ? grid_.point_data : grid_.cell_data;
     arrays.push_back(
         {std::move(name), static_cast<std::size_t>(components), std::move(found), whole_});
@@ -231,9 +236,8 @@ class VtkReader {
     const std::size_t at = more.find_first_of("123456789");
     if (at != std::string_view::npos) components = static_cast<std::uint64_t>(more[at] - '0');
     if (in_.peek_word() == "LOOKUP_TABLE") in_.line();
-    if (binary_) in_.set_binary(std::endian::native == std::endian::little);
-    in_.expect_room(data_count_, {components, components}, "values");
-    keep(name, components, values(data_count_ * components, type));
+    begin_numbers_here();
+    read_array(name, components, data_count_, type);
   }
 
   void read_lookup_table() {
@@ -254,12 +258,11 @@ class VtkReader {
                                      : word == "TENSORS6" ? 6
                                                           : 0;
     if (components == 0)
-      in_.fail("expected the beginning of a part, such as POINTS, found " +
-               meshadapt::quoted(word) + "; correct it, or the count of the part before");
+      in_.fail("expected the beginning of a part, such as POINTS, found ", meshadapt::quoted(word),
+               "; correct it, or the count of the part before");
     const std::string name = decoded_name(in_.word()), type(in_.word());
     begin_numbers();
-    in_.expect_room(data_count_, {components, components}, "values");
-    keep(name, components, values(data_count_ * components, type));
+    read_array(name, components, data_count_, type);
   }
 
   void read_field() {
@@ -282,7 +285,7 @@ class VtkReader {
       else if (name == "names" && data_ == Data::none)
         grid_.names = values(tuples * components, type);
       else
-        keep(name, components, values(tuples * components, type));
+        read_array(name, components, tuples, type);
     }
   }
 
@@ -306,8 +309,8 @@ class VtkReader {
 
 bool is_vtk(std::string_view bytes) { return bytes.starts_with("# vtk DataFile"); }
 
-SpatialMesh read_vtk(const FileBytes& bytes, Warnings* /*warnings*/) {
-  return mesh_of(VtkReader(bytes).read());
+MeshWithFields read_vtk(const FileBytes& bytes, Warnings* warnings) {
+  return finish(mesh_of(VtkReader(bytes).read()), warnings);
 }
 
 }  // namespace ductile::meshadapt

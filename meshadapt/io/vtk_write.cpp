@@ -30,11 +30,16 @@ std::string encoded_name(const std::string& name) {
   return text.empty() ? "%20" : text;
 }
 
+constexpr const char* legacy_name(double) { return "double"; }
+constexpr const char* legacy_name(std::int64_t) { return "vtktypeint64"; }
+constexpr const char* legacy_name(std::int32_t) { return "int"; }
+constexpr const char* legacy_name(std::uint8_t) { return "unsigned_char"; }
+
 template <class Number>
-void put_array(Sink& sink, const std::string& name, std::size_t components, const char* type,
+void put_array(Sink& sink, const std::string& name, std::size_t components,
                const std::vector<Number>& values) {
   sink.write(encoded_name(name) + " " + std::to_string(components) + " " +
-             std::to_string(values.size() / components) + " " + type + "\n");
+             std::to_string(values.size() / components) + " " + legacy_name(Number{}) + "\n");
   for (std::size_t i = 0; i < values.size(); ++i) {
     sink.put(values[i]);
     if ((i + 1) % components == 0) sink.end_record();
@@ -45,9 +50,8 @@ void put_array(Sink& sink, const std::string& name, std::size_t components, cons
 /// Puts names of references as letters, because some readers stop at arrays of texts.
 void put_names(Sink& sink, const AnyMesh& mesh) {
   if (mesh.names.empty()) return;
-  const std::string text = name_lines(mesh);
   sink.write("FIELD FieldData 1\n");
-  put_array(sink, "names", 1, "unsigned_char", std::vector<std::uint8_t>(text.begin(), text.end()));
+  put_array(sink, "names", 1, name_lines(mesh));
 }
 
 void put_grid(Sink& sink, const AnyMesh& mesh) {
@@ -75,19 +79,10 @@ void put_grid(Sink& sink, const AnyMesh& mesh) {
 
 /// Puts references first, then fields, each under a name of its own.
 void put_data(Sink& sink, const AnyMesh& mesh, std::span<const NamedField> fields) {
-  const auto put_fields = [&](NamedField::Place place, std::size_t count) {
-    for (const NamedField& field : fields) {
-      if (field.place != place) continue;
-      SpatialField wide = in_space(field, mesh);
-      if (const auto whole = whole_values(wide, count * wide.components)) {
-        put_array(sink, field.name, wide.components, "vtktypeint64", *whole);
-        continue;
-      }
-      // VTK reads no "nan" in text.
-      wide.values.resize(count * wide.components,
-                         sink.is_binary() ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-      put_array(sink, field.name, wide.components, "double", wide.values);
-    }
+  // VTK reads no "nan" in text.
+  const double missing = sink.is_binary() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+  const auto put = [&](const std::string& name, std::size_t components, const auto& values) {
+    put_array(sink, name, components, values);
   };
   const auto at_vertices = std::count_if(fields.begin(), fields.end(), [](const NamedField& field) {
     return field.place == NamedField::Place::vertices;
@@ -95,20 +90,19 @@ void put_data(Sink& sink, const AnyMesh& mesh, std::span<const NamedField> field
   const CellReferences references = cell_references(mesh);
   sink.write("\nCELL_DATA " + std::to_string(cell_count(mesh)) + "\nFIELD FieldData " +
              std::to_string(2 + std::ssize(fields) - at_vertices) + "\n");
-  put_array(sink, "region", 1, "int", references.region);
-  put_array(sink, "boundary", 1, "int", references.boundary);
-  put_fields(NamedField::Place::elements, cell_count(mesh));
+  put("region", 1, references.region);
+  put("boundary", 1, references.boundary);
+  for_each_vtk_field(mesh, fields, NamedField::Place::elements, missing, put);
   sink.write("\nPOINT_DATA " + std::to_string(mesh.vertex_count()) + "\nFIELD FieldData " +
              std::to_string(1 + at_vertices) + "\n");
-  put_array(sink, "reference", 1, "int", mesh.vertex_reference);
-  put_fields(NamedField::Place::vertices, mesh.vertex_count());
+  put("reference", 1, mesh.vertex_reference);
+  for_each_vtk_field(mesh, fields, NamedField::Place::vertices, missing, put);
 }
 
 }  // namespace
 
 void write_vtk(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options) {
-  expect_fit_for_file(mesh, options.fields);
   if (mesh.vertex_count() > std::numeric_limits<std::int32_t>::max())
     throw InputError(path.string() +
                      ": too large for this format, whose numbers have 32 bits; write a .vtu");

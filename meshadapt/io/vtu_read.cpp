@@ -36,7 +36,10 @@ class VtuReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& text) const { throw InputError(name_ + ": " + text); }
+  template <class... Parts>
+  [[noreturn, gnu::noinline]] void fail(const Parts&... parts) const {
+    throw InputError(text_of(name_, ": ", parts...));
+  }
 
   // ---- Pieces ----
 
@@ -71,7 +74,7 @@ class VtuReader {
         VtuReader reader(read_bytes(folder / source));
         pieces.push_back(reader.read_pieces(reader.document_.child("VTKFile")));
       } catch (const InputError& error) {
-        fail("Piece " + std::to_string(pieces.size() + 1) + ": " + error.what());
+        fail("Piece ", pieces.size() + 1, ": ", error.what());
       }
     }
     if (pieces.empty())
@@ -97,18 +100,18 @@ class VtuReader {
     const pugi::xml_parse_result parsed = document_.load_buffer(xml.data(), xml.size());
     if (parsed.status == pugi::status_out_of_memory) throw std::bad_alloc();
     if (!parsed)
-      fail("expected XML, found at byte " + std::to_string(parsed.offset) + ": " +
-           parsed.description() + "; the file is damaged or cut short, write it again");
+      fail("expected XML, found at byte ", parsed.offset, ": ", parsed.description(),
+           "; the file is damaged or cut short, write it again");
   }
 
   void read_head(pugi::xml_node file) {
     const std::string type = file.attribute("type").value();
     if (type != "UnstructuredGrid")
-      fail("expected VTK's type UnstructuredGrid, found " + quoted_type(type) +
+      fail("expected VTK's type UnstructuredGrid, found ", quoted_type(type),
            "; write an unstructured grid");
     const std::string compressor = file.attribute("compressor").value();
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-      fail("expected arrays compressed by zlib or not at all, found " + quoted_type(compressor) +
+      fail("expected arrays compressed by zlib or not at all, found ", quoted_type(compressor),
            "; write the file with zlib");
     encoding_.compressed = !compressor.empty();
     encoding_.head_bytes = file.attribute("header_type").value() == std::string("UInt64") ? 8 : 4;
@@ -144,28 +147,27 @@ class VtuReader {
     try {
       const std::string format = node.attribute("format").value();
       if (format != "binary" && format != "appended") return vtk_reals(node.text().get());
-      const VtkNumber number = vtk_number(node.attribute("type").value());
+      const NumberKind number = number_kind(node.attribute("type").value());
       if (number.bytes == 0)
         throw InputError("expected numbers, found type " +
                          quoted_type(node.attribute("type").value()) + "; leave the array out");
       return vtk_reals(bytes_of(node), number, encoding_.swapped);
     } catch (const InputError& error) {
-      fail(where(node) + error.what());
+      fail(where(node), error.what());
     }
   }
 
   std::vector<std::int64_t> indices_of(pugi::xml_node cells, const char* name, std::size_t count) {
     const pugi::xml_node node = cells.find_child_by_attribute("DataArray", "Name", name);
-    if (!node)
-      fail(std::string("expected the array '") + name + "' of Cells, found none; write it");
+    if (!node) fail("expected the array '", name, "' of Cells, found none; write it");
     const std::vector<double> numbers = numbers_of(node);
     if (count != any_count && numbers.size() != count)
-      fail(where(node) + "expected " + std::to_string(count) + " numbers, found " +
-           std::to_string(numbers.size()) + "; the file is damaged, write it again");
+      fail(where(node), "expected ", count, " numbers, found ", numbers.size(),
+           "; the file is damaged, write it again");
     std::vector<std::int64_t> indices(numbers.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (!(std::abs(numbers[i]) < 1e15) || numbers[i] != std::floor(numbers[i]))
-        fail(where(node) + "expected whole numbers, found others; write the file again");
+        fail(where(node), "expected whole numbers, found others; write the file again");
       indices[i] = static_cast<std::int64_t>(numbers[i]);
     }
     return indices;
@@ -175,7 +177,7 @@ class VtuReader {
   std::vector<VtkArray> arrays_of(pugi::xml_node data, std::size_t count) {
     std::vector<VtkArray> arrays;
     for (const pugi::xml_node node : data.children("DataArray")) {
-      const VtkNumber number = vtk_number(node.attribute("type").value());
+      const NumberKind number = number_kind(node.attribute("type").value());
       if (number.bytes == 0) continue;  // texts
       VtkArray array;
       array.whole = !number.is_real;
@@ -184,9 +186,8 @@ class VtuReader {
       array.values = numbers_of(node);
       if (array.components == 0 || array.components > array.values.size() + 1 ||
           array.values.size() != array.components * count)
-        fail(where(node) + "expected " + std::to_string(array.components) +
-             " numbers for each of " + std::to_string(count) + ", found " +
-             std::to_string(array.values.size()) + "; the file is damaged, write it again");
+        fail(where(node), "expected ", array.components, " numbers for each of ", count, ", found ",
+             array.values.size(), "; the file is damaged, write it again");
       arrays.push_back(std::move(array));
     }
     return arrays;
@@ -199,8 +200,8 @@ class VtuReader {
     if (!coordinates) fail("expected an array of Points, found none; write the file again");
     grid.points = numbers_of(coordinates);
     if (grid.points.size() / 3 != points || grid.points.size() % 3 != 0)
-      fail("expected 3 coordinates of each of " + std::to_string(points) + " points, found " +
-           std::to_string(grid.points.size()) + "; the file is damaged, write it again");
+      fail("expected 3 coordinates of each of ", points, " points, found ", grid.points.size(),
+           "; the file is damaged, write it again");
     grid.types = indices_of(piece.child("Cells"), "types", cells);
     grid.ends = indices_of(piece.child("Cells"), "offsets", cells);
     grid.connectivity = indices_of(piece.child("Cells"), "connectivity", any_count);
@@ -230,8 +231,8 @@ bool is_vtu(std::string_view bytes) {
          (begin.starts_with("<?xml") && begin.find("<VTKFile") != std::string_view::npos);
 }
 
-SpatialMesh read_vtu(const FileBytes& bytes, Warnings* /*warnings*/) {
-  return mesh_of(VtuReader(bytes).read());
+MeshWithFields read_vtu(const FileBytes& bytes, Warnings* warnings) {
+  return finish(mesh_of(VtuReader(bytes).read()), warnings);
 }
 
 }  // namespace ductile::meshadapt

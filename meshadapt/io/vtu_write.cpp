@@ -7,9 +7,9 @@
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "base64.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "formats.hpp"
 #include "sink.hpp"
@@ -21,21 +21,6 @@ namespace {
 // ---- The text of one array ----
 
 constexpr std::size_t block_size = std::size_t{1} << 20;
-
-void append_base64(std::string& text, std::span<const unsigned char> bytes) {
-  constexpr std::string_view letters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::size_t start = text.size();
-  text.resize(start + (bytes.size() + 2) / 3 * 4, '=');
-  char* out = text.data() + start;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k <= count; ++k) out[k] = letters[group >> (18 - 6 * k) & 63U];
-    out += 4;
-  }
-}
 
 /// Appends one compressed block and returns its size.
 std::uint64_t append_compressed(std::vector<unsigned char>& bytes,
@@ -62,8 +47,8 @@ std::string vtk_encoded(std::span<const std::byte> array) {
     table.push_back(append_compressed(
         compressed, array.subspan(begin, std::min(block_size, array.size() - begin))));
   std::string text;
-  append_base64(text, {reinterpret_cast<const unsigned char*>(table.data()), 8 * table.size()});
-  append_base64(text, compressed);
+  append_base64(text, std::as_bytes(std::span(table)));
+  append_base64(text, std::as_bytes(std::span(compressed)));
   return text;
 }
 
@@ -138,38 +123,30 @@ class VtuWriter {
   /// strings.
   void put_names() {
     if (mesh_.names.empty()) return;
-    const std::string text = name_lines(mesh_);
+    const std::vector<std::uint8_t> letters = name_lines(mesh_);
     begin("FieldData");
-    put_array("names", 1, std::vector<std::uint8_t>(text.begin(), text.end()),
-              attribute("NumberOfTuples", std::to_string(text.size())));
+    put_array("names", 1, letters, attribute("NumberOfTuples", std::to_string(letters.size())));
     end("FieldData");
   }
 
   void put_data() {
     begin("PointData");
     put_array("reference", 1, mesh_.vertex_reference);
-    put_fields(NamedField::Place::vertices, mesh_.vertex_count());
+    put_fields(NamedField::Place::vertices);
     end("PointData");
     const CellReferences references = cell_references(mesh_);
     begin("CellData");
     put_array("region", 1, references.region);
     put_array("boundary", 1, references.boundary);
-    put_fields(NamedField::Place::elements, cell_count(mesh_));
+    put_fields(NamedField::Place::elements);
     end("CellData");
   }
 
-  /// Elements are the first cells; other cells get NaN, or 0 where numbers are whole.
-  void put_fields(NamedField::Place place, std::size_t count) {
-    for (const NamedField& field : fields_) {
-      if (field.place != place) continue;
-      SpatialField wide = in_space(field, mesh_);
-      if (const auto whole = whole_values(wide, count * wide.components)) {
-        put_array(field.name, wide.components, *whole);
-        continue;
-      }
-      wide.values.resize(count * wide.components, std::numeric_limits<double>::quiet_NaN());
-      put_array(field.name, wide.components, wide.values);
-    }
+  void put_fields(NamedField::Place place) {
+    for_each_vtk_field(mesh_, fields_, place, std::numeric_limits<double>::quiet_NaN(),
+                       [this](const std::string& name, std::size_t components, const auto& values) {
+                         put_array(name, components, values);
+                       });
   }
 
   void put_cells() {
@@ -200,7 +177,6 @@ class VtuWriter {
 
 void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options) {
-  expect_fit_for_file(mesh, options.fields);
   warn_of_lost(options, path, beside_cells(mesh));
   VtuWriter(outputs.stage(path), mesh, options.fields).write();
 }

@@ -7,6 +7,11 @@
 
 namespace ductile::meshadapt {
 
+/// The number of triangles, in the plane or of a surface, or of tetrahedra.
+inline std::size_t element_count(const AnyMesh& mesh) {
+  return element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+}
+
 /// Throws InputError unless the mesh is of dimension 2 or 3 and each vertex has its coordinates and
 /// its reference.
 void expect_coordinates(const AnyMesh& mesh);

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace ductile::cli::arguments_test {
 namespace {
@@ -43,6 +46,27 @@ TEST(Arguments, TellsWhatIsMissingOrUnknown) {
   EXPECT_THROW(parse({"-hmin="}), UsageError);
   EXPECT_THROW(parse({"-unknown"}), UsageError);
   EXPECT_THROW(parse({"-nomove=1"}), UsageError);
+}
+
+/// Whatever letters of a name are mixed up, except that the name of another option is that option.
+TEST(Arguments, KnowsTheLettersOfAName) {
+  constexpr std::array<Option, 3> names{
+      {{"-hsiz", "X", "size"}, {"-rmc", "X", "components"}, {"--iterations", "N", "rounds"}}};
+  for (const Option& option : names)
+    for (std::size_t i = option.name.find_first_not_of('-'); i < option.name.size(); ++i)
+      for (std::size_t j = i + 1; j < option.name.size(); ++j) {
+        std::string word(option.name);
+        std::swap(word[i], word[j]);
+        if (word == option.name) continue;
+        try {
+          Arguments(names, std::vector<std::string>{word, "1"});
+          ADD_FAILURE() << word;
+        } catch (const UnknownOption& error) {
+          EXPECT_TRUE(
+              std::string(error.what()).ends_with("did you mean " + std::string(option.name) + "?"))
+              << error.what();
+        }
+      }
 }
 
 TEST(Arguments, RefusesWhatIsNoNumber) {

@@ -102,6 +102,17 @@ TEST_F(FormatsCommand, ConvertGoesFromEachToEach) {
   EXPECT_EQ(folder_.run("convert part.msh a.stl").status, 2);
 }
 
+TEST_F(FormatsCommand, FieldsKeepTheirNamesFromFileToFile) {
+  expect_done(folder_, "adapt part.msh -hsiz .1 -v 0 -o a.vtu");
+  EXPECT_EQ(folder_.run("convert a.vtu plain.meshb").status, 0);
+  for (const std::string from : {"a.vtu", "b.vtk", "b.msh"})
+    for (const std::string to : {"b.vtu", "b.vtk", "b.msh"}) {
+      if (from == to) continue;
+      expect_done(folder_, "convert plain.meshb " + to + " -sol " + from);
+      expect_done(folder_, "view " + to + " --by metric -o b.png");  // found by its name
+    }
+}
+
 TEST_F(FormatsCommand, PipesAreCalledMinus) {
   const auto out_of = [&](const std::string& words) {
     const Outcome outcome = folder_.run(words);

@@ -69,6 +69,23 @@ TEST(MoveCommand, WritesWhatTheLibraryGives) {
   EXPECT_EQ(meshadapt::read_field(files.path("b.f.sol")).values, moved.fields[0].values);
 }
 
+TEST(MoveCommand, WritesNoMetricInAnyFormatIfNoneIsWanted) {
+  const Files files(0.1);
+  for (const std::string options : {"", " --no-metric"})
+    for (const std::string ending : {".mesh", ".meshb", ".msh", ".vtu", ".vtk", ".su2"}) {
+      const std::string words = "move a.mesh u.sol --field f.sol -o b" + ending + options;
+      const Outcome outcome = files.folder.run(words);
+      ASSERT_EQ(outcome.status, 0) << words << outcome.err;
+      bool found = false;
+      for (const auto& field :
+           meshadapt::read_mesh_with_fields(files.path(("b" + ending).c_str())).fields)
+        found = found || field.name == "metric";
+      for (const char* beside : {"b.sol", "b.solb"})
+        found = std::filesystem::remove(files.path(beside)) || found;
+      EXPECT_EQ(found, options.empty()) << words;
+    }
+}
+
 TEST(MoveCommand, MmgsOptionAllowsWhatMmgDoes) {
   const Files files(0.4);
   ASSERT_EQ(files.folder.run("move a.mesh u.sol -o b.mesh").status, 0);

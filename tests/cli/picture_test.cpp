@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,6 @@
 #include "ductile/meshadapt/error.hpp"
 #include "picture/draw.hpp"
 #include "picture/ellipses.hpp"
-#include "picture/page.hpp"
 #include "picture/scene.hpp"
 #include "picture/ticks.hpp"
 #include "shown_field.hpp"
@@ -280,11 +280,14 @@ TEST(Colours, GoFromOneEndToTheOther) {
 
 // ---- Pages ----
 
-/// How many bytes the array of this name has in a page.
-std::size_t bytes_of(const std::string& page, const std::string& name) {
+/// The array of this name in a page, and how many bytes it has.
+std::string array_of(const std::string& page, const std::string& name) {
   const std::string begin = "\"" + name + "\": \"";
   const std::size_t at = page.find(begin) + begin.size(), end = page.find('"', at);
-  const std::string text = page.substr(at, end - at);
+  return page.substr(at, end - at);
+}
+std::size_t bytes_of(const std::string& page, const std::string& name) {
+  const std::string text = array_of(page, name);
   return text.size() / 4 * 3 - static_cast<std::size_t>(std::count(text.begin(), text.end(), '='));
 }
 
@@ -317,6 +320,24 @@ TEST(Page, HasAFlatMeshAndASurfaceToo) {
   surface.triangles = {};
   EXPECT_THROW(turning_page(runtime::Executor({.threads = 1}), surface, nullptr, {}),
                meshadapt::InputError);
+}
+
+/// The colours of the scale, not of references: a page and a picture show the same.
+TEST(Page, ColoursASurfaceAsItsLegendSays) {
+  AnyMesh surface = box_mesh<3>({1, 1, 1}, {2, 2, 2});
+  surface.tetrahedra = {};
+  for (const Tint tint : {Tint::quality, Tint::size, Tint::reference}) {
+    const runtime::Executor executor({.threads = 1});
+    const Look look = look_at(executor, surface, nullptr, {.tint = tint});
+    EXPECT_EQ(look.legends.size(), 1U);
+    EXPECT_EQ(look.legends[0].tint, tint);
+    std::set<std::string> colours;  // three bytes are four letters
+    const std::string page = turning_page(executor, surface, nullptr, {.tint = tint});
+    const std::string text = array_of(page, "colours");
+    for (std::size_t at = 0; at < text.size(); at += 4) colours.insert(text.substr(at, 4));
+    EXPECT_EQ(colours.size(), tint == Tint::reference ? 6U : 1U);
+    EXPECT_EQ(bytes_of(page, "colours"), 3 * surface.triangles.size());
+  }
 }
 
 TEST(Draw, RefusesAnSvgOfTooManyPolygons) {

@@ -86,6 +86,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adpat", "did you mean 'adapt'");
   expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
   expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
+  expect("adapt a.mesh -hzis 1", "did you mean -hsiz?");
   for (const char* refused : {"3dMedit", "nreg", "nsd", "optimLES", "xreg"})
     expect(("adapt a.mesh -" + std::string(refused) + " 1").c_str(),
            ("unknown option -" + std::string(refused) + "\n  Mmg's, not here: ").c_str());
@@ -145,13 +146,15 @@ TEST(Info, TellsSizesByReference) {
     auto& reference = dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
     for (std::size_t e = 0; e < reference.size(); e += 3) reference[e] = 4;
     const Extents found = extents_of(mesh);
-    EXPECT_EQ(found.low, (std::array<double, 3>{}));
-    EXPECT_EQ(found.high, (std::array<double, 3>{3, 2, dimension == 2 ? 0.0 : 1.0}));
-    EXPECT_NEAR(found.total(dimension), 6, 1e-12);
-    EXPECT_NEAR(found.total(dimension - 1), dimension == 2 ? 10 : 22, 1e-12);
-    EXPECT_NEAR(found.size_of.at({dimension, 4}), 2, 1e-12);
-    EXPECT_NEAR(found.size_of.at({dimension - 1, Side::left}), 2, 1e-12);
-    EXPECT_NEAR(found.size_of.at({dimension - 1, Side::top}), 3, 1e-12);
+    EXPECT_EQ(found.box.low.x, (std::array<double, 3>{}));
+    EXPECT_EQ(found.box.high.x, (std::array<double, 3>{3, 2, dimension == 2 ? 0.0 : 1.0}));
+    const auto cells = static_cast<std::size_t>(dimension), facets = cells - 1;
+    EXPECT_NEAR(found.total(cells).size, 6, 1e-12);
+    EXPECT_EQ(found.total(cells).count, reference.size());
+    EXPECT_NEAR(found.total(facets).size, dimension == 2 ? 10 : 22, 1e-12);
+    EXPECT_NEAR(found.amount_of[cells].at(4).size, 2, 1e-12);
+    EXPECT_NEAR(found.amount_of[facets].at(Side::left).size, 2, 1e-12);
+    EXPECT_NEAR(found.amount_of[facets].at(Side::top).size, 3, 1e-12);
     EXPECT_NEAR(found.smallest_angle, 45, 1e-9);
     EXPECT_NEAR(found.largest_angle, 90, 1e-9);
   }

@@ -19,7 +19,6 @@
 #include "first_rank.hpp"
 #include "input.hpp"
 #include "program.hpp"
-#include "run_in_team.hpp"
 #include "write_hdf5.hpp"
 
 namespace ductile::petsc {

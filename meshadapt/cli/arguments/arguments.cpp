@@ -9,8 +9,6 @@ namespace ductile::cli {
 
 namespace {
 
-using meshadapt::number_in;
-
 /// True if a word asks for an option; "-" and "-.vtu" are files, "-1" is a number.
 bool looks_like_option(std::string_view word) {
   if (word.size() < 2 || word[0] != '-' || word[1] == '.') return false;
@@ -33,8 +31,10 @@ std::string_view nearest_name(std::span<const Option> options, std::string_view 
   for (const Option& option : options) {
     if (option.help.empty()) continue;
     for (const std::string_view name : {option.name, option.alias}) {
-      const std::size_t distance = edit_distance(without_dashes(word), without_dashes(name));
-      if (distance >= least || distance > without_dashes(name).size() / 3) continue;
+      const std::string_view typed = without_dashes(word), known = without_dashes(name);
+      const bool mixed = std::ranges::is_permutation(typed, known);  // "hzis" for "hsiz"
+      const std::size_t distance = mixed ? 1 : edit_distance(typed, known);
+      if (distance >= least || distance > known.size() / 3) continue;
       least = distance;
       nearest = name;
     }
@@ -132,20 +132,18 @@ std::vector<std::string> Arguments::texts(std::string_view name) const {
   return found == values_of_.end() ? std::vector<std::string>{} : found->second;
 }
 
-std::optional<double> Arguments::number(std::string_view name) const {
+std::optional<double> Arguments::number(std::string_view name, const char* expected) const {
   const std::optional<std::string> value = text(name);
   if (!value) return std::nullopt;
   const std::optional<double> parsed = number_in<double>(*value);
-  if (!parsed || !std::isfinite(*parsed)) refuse_value(name, "a number", *value);
+  if (!parsed || !std::isfinite(*parsed)) refuse_value(name, expected, *value);
   return parsed;
 }
 
 std::optional<double> Arguments::positive(std::string_view name) const {
-  const std::optional<std::string> value = text(name);
-  if (!value) return std::nullopt;
-  const std::optional<double> parsed = number_in<double>(*value);
-  if (!parsed || !std::isfinite(*parsed) || *parsed <= 0)
-    refuse_value(name, "a number above 0", *value);
+  constexpr const char* expected = "a number above 0";
+  const std::optional<double> parsed = number(name, expected);
+  if (parsed && *parsed <= 0) refuse_value(name, expected, *text(name));
   return parsed;
 }
 

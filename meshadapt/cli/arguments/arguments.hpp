@@ -5,6 +5,7 @@
 /// the campaign share it; it needs no library.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
@@ -13,7 +14,12 @@
 #include <string_view>
 #include <vector>
 
+namespace ductile::meshadapt {}
+
 namespace ductile::cli {
+
+using namespace meshadapt;  // the program is about what the library does
+namespace fs = std::filesystem;
 
 /// The command line is wrong.
 struct UsageError : std::runtime_error {
@@ -51,7 +57,7 @@ class Arguments {
   std::vector<std::string> texts(std::string_view name) const;
   /// Throw UsageError unless the value is such a number, inside the range.
   std::optional<double> positive(std::string_view name) const;
-  std::optional<double> number(std::string_view name) const;
+  std::optional<double> number(std::string_view name, const char* expected = "a number") const;
   std::optional<int> integer(std::string_view name, int least, int most) const;
 
  private:

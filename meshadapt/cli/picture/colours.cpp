@@ -1,6 +1,5 @@
 #include "colours.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -8,11 +8,10 @@
 #include <limits>
 #include <memory>
 
-#include "../files.hpp"
+#include "../report.hpp"
 #include "apart.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "legend.hpp"
-#include "pen.hpp"
 
 namespace ductile::cli {
 
@@ -68,8 +67,7 @@ Layout lay_out(const Scene& scene, int size) {
   const double larger = std::max(widest, highest);
   layout.scale = larger > 0 ? layout.size / larger : 1;
   if (!std::isfinite(layout.scale) || !std::isfinite(larger))
-    throw meshadapt::InputError(scene.caption +
-                                ": expected an extent from 1e-300 to 1e300; scale the mesh");
+    throw InputError(scene.caption + ": expected an extent from 1e-300 to 1e300; scale the mesh");
   layout.panel_width = std::max(widest * layout.scale, 0.35 * layout.size);
   layout.panel_height = std::max(highest * layout.scale, 1.0);
   const auto panels = static_cast<double>(scene.panels.size());
@@ -222,8 +220,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 
 void expect_success(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS)
-    throw meshadapt::Error(std::string("the picture could not be drawn: ") +
-                           cairo_status_to_string(status));
+    throw Error(std::string("the picture could not be drawn: ") + cairo_status_to_string(status));
 }
 
 /// Throws Error if cairo has failed.
@@ -262,9 +259,9 @@ std::string draw_png(const Scene& scene, const Layout& layout) {
 
 std::string draw_svg(const Scene& scene, const Layout& layout) {
   if (scene.face_count() > most_svg_faces)
-    throw meshadapt::InputError("the picture would have " + with_commas(scene.face_count()) +
-                                " polygons, expected at most " + with_commas(most_svg_faces) +
-                                " for an .svg; give the picture a name ending in .png instead");
+    throw InputError("the picture would have " + with_commas(scene.face_count()) +
+                     " polygons, expected at most " + with_commas(most_svg_faces) +
+                     " for an .svg; give the picture a name ending in .png instead");
   std::string bytes;
   {
     const Surface surface(

@@ -18,7 +18,7 @@ namespace {
 constexpr double units = 1000;
 constexpr double usual_axis = 22, largest_usual_axis = 70;  // long half axis
 constexpr double most_growth = 2.6, least_growth = 0.35;    // of one beyond the usual
-constexpr double thinnest_axis = 1.2;                       // short half axis
+constexpr double least_short_axis = 1.2;                    // short half axis
 constexpr double gap = 2;                                   // kept free around each
 
 /// Half axes and their directions, the long one first.
@@ -29,8 +29,8 @@ struct Axes {
   double mean() const { return std::sqrt(length[0]) * std::sqrt(length[1]); }
 };
 
-Axes axes_of(const meshadapt::Metric<2>& metric) {
-  const auto principal = meshadapt::principal_axes(metric);
+Axes axes_of(const Metric<2>& metric) {
+  const auto principal = principal_axes(metric);
   Axes axes;
   for (std::size_t i = 0; i < 2; ++i) {
     axes.length[i] = 1 / std::sqrt(principal.value[i]);
@@ -174,7 +174,7 @@ UnitEllipses choose_ellipses(const std::vector<EllipsePlace>& places, double ext
     Axes drawn = axes[i];
     const double wanted = drawn.length[0] * result.magnification / unit;
     const double length = std::clamp(wanted, smallest, largest);
-    drawn.length[1] = std::max(length / drawn.length[0] * drawn.length[1], thinnest_axis);
+    drawn.length[1] = std::max(length / drawn.length[0] * drawn.length[1], least_short_axis);
     drawn.length[0] = length;
     if (!taken.take(places[i].centre, drawn)) continue;
     result.all_magnified = result.all_magnified && wanted == length;

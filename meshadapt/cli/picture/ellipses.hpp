@@ -13,7 +13,7 @@ namespace ductile::cli {
 /// A candidate for an ellipse.
 struct EllipsePlace {
   Point centre;
-  meshadapt::Metric<2> metric;
+  Metric<2> metric;
   double area = 0;    ///< of the plane that it stands for
   bool inner = true;  ///< others are drawn where room is left
 };

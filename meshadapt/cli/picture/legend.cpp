@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <string>
 #include <vector>
 
-#include "../files.hpp"
+#include "../report.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "pen.hpp"
 #include "ticks.hpp"
 
 namespace ductile::cli {
@@ -30,9 +27,7 @@ std::vector<Tick> even_ticks(const Legend& legend) {
     const bool quality = legend.tint == Tint::quality;
     const double value = quality ? legend.from + t * (legend.to - legend.from)
                                  : legend.from * std::pow(legend.to / legend.from, t);
-    char text[32];
-    std::snprintf(text, sizeof text, quality ? "%.1f" : "%.3g", value);
-    ticks.push_back({t, text});
+    ticks.push_back({t, quality ? format("%.1f", value) : format("%.3g", value)});
   }
   return ticks;
 }
@@ -78,7 +73,7 @@ void draw_scale(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
 
 /// The text cut to one line, with the letters that the font has.
 std::string fitting(cairo_t* pen, const std::string& title, double width) {
-  std::string text = as_utf8(meshadapt::printable(title));
+  std::string text = as_utf8(printable(title));
   if (text_width(pen, text) <= width) return text;
   while (!text.empty() && text_width(pen, text + "...") > width) {
     while ((static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80) text.pop_back();
@@ -125,6 +120,45 @@ void draw_legend(cairo_t* pen, const Legend& legend, LegendPlace place) {
     draw_swatches(pen, legend, place);
   else
     draw_scale(pen, legend, place);
+}
+
+// ---- Ticks ----
+
+namespace {
+
+/// A power of ten times 1, 2 or 5.
+double round_step(double least) {
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * power >= least * (1 - 1e-9)) return digit * power;
+  return 10 * power;
+}
+
+/// A number with the digits that distinguish it from its neighbours, a step away, on a scale up to
+/// `largest`.
+std::string tick_label(double value, double step, double largest) {
+  const auto digits = [](double of) { return static_cast<int>(std::floor(std::log10(of) + 1e-9)); };
+  if (largest >= 1e6 || largest < 1e-3)
+    return format("%.*e", std::clamp(digits(largest) - digits(step), 0, 17), value);
+  return format("%.*f", std::max(0, -digits(step)), value);
+}
+
+}  // namespace
+
+std::vector<Tick> round_ticks(double from, double to, int most) {
+  const double largest = std::max(std::abs(from), std::abs(to));
+  const double range = to / 2 - from / 2;  // half of it, which is a number whatever the ends are
+  if (!(range > largest * 1e-13)) return {{0.5, format("%.6g", from)}};
+  const double step = round_step(2 * (range / most));
+  std::vector<Tick> ticks;
+  const double first = std::ceil(from / step - 1e-9);
+  for (int i = 0; i <= most + 1; ++i) {
+    const double value = (first + i) * step + 0.0;
+    const double at = (value / 2 - from / 2) / range;
+    if (!(at <= 1 + 1e-9)) break;
+    ticks.push_back({std::clamp(at, 0.0, 1.0), tick_label(value, step, largest)});
+  }
+  return ticks.empty() ? round_ticks(from, to, most + 1) : ticks;
 }
 
 }  // namespace ductile::cli

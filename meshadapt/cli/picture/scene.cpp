@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "../files.hpp"
+#include "../report.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "extents.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/names.hpp"
 
 namespace ductile::cli {
 
 namespace {
-
-using meshadapt::AnyField;
-using meshadapt::AnyMesh;
 
 /// Edge of the regular element with the same area or volume.
 double size_of(const AnyMesh& mesh, std::size_t element) {
@@ -55,46 +55,107 @@ std::string caption_of(const AnyMesh& mesh) {
   return caption;
 }
 
-struct Look {
-  const Tinting& tinting;
-  const AnyField* metric;  ///< to draw ellipses of; null: none
-  int axis;                ///< of the cut
-};
-
-/// [reference] the name of entities of a dimension; empty if they have none.
-std::vector<std::string> names_of_references(const AnyMesh& mesh, int dimension,
-                                             const std::vector<std::int32_t>& references) {
-  std::vector<std::string> names(references.size());
-  for (std::size_t i = 0; i < references.size(); ++i)
-    for (const meshadapt::ReferenceName& name : mesh.names)
-      if (name.dimension == dimension && name.reference == references[i]) names[i] = name.name;
-  return names;
+/// The legend for the references of entities of a dimension, each of which is listed once.
+Legend reference_legend(const AnyMesh& mesh, int dimension, const char* title,
+                        std::vector<std::int32_t> references) {
+  std::ranges::sort(references);
+  references.erase(std::unique(references.begin(), references.end()), references.end());
+  Legend legend{.title = title, .tint = Tint::reference, .references = std::move(references)};
+  for (const std::int32_t reference : legend.references)
+    legend.names.push_back(joined_names(mesh, dimension, reference));
+  return legend;
 }
 
-void add_solid(Scene& scene, const AnyMesh& mesh, const Look& look) {
-  const Camera camera = camera_along(look.axis);
-  scene.panels.push_back(surface_panel(mesh, camera, look.tinting.facet_colour));
-  const std::vector<std::int32_t> references = distinct(mesh.triangles.reference);
-  if (references.size() > 1 && !look.tinting.facet_colour)
-    scene.legends.push_back({.title = "surface",
-                             .tint = Tint::reference,
-                             .references = references,
-                             .names = names_of_references(mesh, 2, references)});
-  if (mesh.tetrahedra.size() > 0)
-    scene.panels.push_back(cut_panel(mesh, look.tinting.colour_of, camera, look.axis));
-  else if (!look.tinting.facet_colour)
-    return;
-  if (look.metric)
-    add_ellipses_3d(scene, mesh, *look.metric, camera, look.axis);
-  else
-    scene.legends.push_back(look.tinting.legend);
+// ---- Colours by a field: each element gets that of its value, or of the mean at its corners ----
+
+/// The colour of values that are not on the scale: NaN and infinite ones.
+constexpr Colour beyond_scale{0.80, 0.80, 0.80};
+
+struct Range {
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+  bool all_finite = true;
+};
+
+Range range_of(const std::vector<double>& values) {
+  Range range;
+  for (const double value : values) {
+    if (!std::isfinite(value)) {
+      range.all_finite = false;
+      continue;
+    }
+    range.from = std::min(range.from, value);
+    range.to = std::max(range.to, value);
+  }
+  if (range.from > range.to) range.from = range.to = 0;
+  return range;
+}
+
+std::string title_of_field(const NamedField& field, const Range& range) {
+  return field.name +
+         (field.place == NamedField::Place::vertices ? ", at vertices" : ", on elements") +
+         format(": %.5g", range.from) +
+         (range.from == range.to ? "" : format(" to %.5g", range.to)) +
+         (range.all_finite ? "" : "; grey: infinite");
+}
+
+Colour colour_in(const Range& range, double value) {
+  if (!std::isfinite(value)) return beyond_scale;
+  if (range.from == range.to) return size_colour(0.5);
+  return size_colour((value / 2 - range.from / 2) / (range.to / 2 - range.from / 2));
+}
+
+double mean_of(const NamedField& field, std::span<const std::uint32_t> corners) {
+  double mean = 0;
+  for (const std::uint32_t v : corners)
+    mean += field.values[v] / static_cast<double>(corners.size());
+  return mean;
+}
+
+Tinting tint_by_field(const AnyMesh& mesh, const NamedField& field) {
+  const Range range = range_of(field.values);
+  Tinting result;
+  result.legend = {.title = title_of_field(field, range),
+                   .tint = Tint::field,
+                   .from = range.from,
+                   .to = range.to};
+  const bool at_vertices = field.place == NamedField::Place::vertices;
+  const auto add_all = [&](const auto& cells) {
+    for (std::size_t e = 0; e < cells.size(); ++e)
+      result.colour_of.push_back(
+          colour_in(range, at_vertices ? mean_of(field, cells.vertices[e]) : field.values[e]));
+  };
+  element_dimension(mesh) == 2 ? add_all(mesh.triangles) : add_all(mesh.tetrahedra);
+  // The field outlives the tinting, see SceneOptions.
+  result.facet_colour = [&field, range, at_vertices](std::span<const std::uint32_t> corners,
+                                                     std::size_t element) {
+    return colour_in(range, at_vertices ? mean_of(field, corners) : field.values[element]);
+  };
+  return result;
 }
 
 /// Faint, so that ellipses are seen.
 Tinting no_tint(const AnyMesh& mesh) {
-  const std::size_t elements =
-      element_dimension(mesh) == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
-  return {.colour_of = std::vector<Colour>(elements, Colour{0.97, 0.97, 0.97})};
+  return {.colour_of = std::vector<Colour>(element_count(mesh), Colour{0.97, 0.97, 0.97})};
+}
+
+Point point(const AnyMesh& mesh, std::uint32_t vertex) {
+  const double* x = &mesh.coordinates[std::size_t{vertex} * 2];
+  return {x[0], x[1]};
+}
+
+/// The ends of an edge, lower first, and the reference of a triangle beside it.
+using Side = std::pair<std::pair<std::uint32_t, std::uint32_t>, std::int32_t>;
+
+std::vector<Side> all_sides(const AnyMesh& mesh) {
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& v = mesh.triangles.vertices[t];
+    for (std::size_t i = 0; i < 3; ++i)
+      sides.push_back({std::minmax(v[i], v[(i + 1) % 3]), mesh.triangles.reference[t]});
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
 }
 
 }  // namespace
@@ -111,12 +172,6 @@ void widen(Legend& legend) {
   legend.to *= 1.1;
 }
 
-std::vector<std::int32_t> distinct(std::vector<std::int32_t> references) {
-  std::sort(references.begin(), references.end());
-  references.erase(std::unique(references.begin(), references.end()), references.end());
-  return references;
-}
-
 Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
                       const AnyField* metric, Tint tint) {
   const auto& references =
@@ -125,10 +180,7 @@ Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
   Tinting result;
   result.legend.tint = tint;
   if (tint == Tint::reference) {
-    result.legend.title = "elements";
-    result.legend.references = distinct(references);
-    result.legend.names =
-        names_of_references(mesh, element_dimension(mesh), result.legend.references);
+    result.legend = reference_legend(mesh, element_dimension(mesh), "elements", references);
     for (const std::int32_t reference : references)
       result.colour_of.push_back(reference_colour(reference));
   } else {
@@ -139,43 +191,83 @@ Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
   return result;
 }
 
+namespace {
+
+/// By what the options ask for.
 Tinting tinting_of(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
                    const SceneOptions& options) {
   if (options.tint == Tint::metric) return no_tint(mesh);
   if (options.tint == Tint::field) return tint_by_field(mesh, *options.field);
-  return tint_elements(executor, mesh, metric, options.tint);
-}
-
-Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
-                 const SceneOptions& options) {
-  if (mesh.triangles.size() == 0 && mesh.tetrahedra.size() == 0)
-    throw meshadapt::InputError(mesh.name +
-                                ": expected triangles or tetrahedra to draw, found neither; give "
-                                "a mesh with some");
-  const AnyField* const shown = options.tint == Tint::metric ? metric : nullptr;
-  if (shown && mesh.dimension == 3 && mesh.tetrahedra.size() == 0)
-    throw meshadapt::InputError(mesh.name +
-                                ": expected tetrahedra, which a metric is shown in a cut through, "
-                                "found none; give a mesh with some");
-  Scene scene;
-  scene.caption = caption_of(mesh);
-  Tinting tinting = tinting_of(executor, mesh, metric, options);
-  if (meshadapt::is_surface(mesh) && !tinting.facet_colour && options.tint != Tint::reference)
+  Tinting tinting = tint_elements(executor, mesh, metric, options.tint);
+  if (is_surface(mesh) && options.tint != Tint::reference)
     tinting.facet_colour = [colour_of = tinting.colour_of](std::span<const std::uint32_t>,
                                                            std::size_t element) {
       return colour_of[element];
     };
-  if (mesh.dimension == 3) {
-    const int axis = options.cut_axis < 0 ? thinnest_axis(mesh) : options.cut_axis;
-    add_solid(scene, mesh, {tinting, shown, axis});
+  return tinting;
+}
+
+}  // namespace
+
+Look look_at(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+             const SceneOptions& options) {
+  if (mesh.triangles.size() == 0 && mesh.tetrahedra.size() == 0)
+    throw InputError(mesh.name +
+                     ": expected triangles or tetrahedra to draw, found neither; give "
+                     "a mesh with some");
+  const bool in_plane = mesh.dimension == 2, shows_metric = options.tint == Tint::metric;
+  if (shows_metric && is_surface(mesh))
+    throw InputError(mesh.name +
+                     ": expected tetrahedra, which a metric is shown in a cut through, "
+                     "found none; give a mesh with some");
+  Look look{.caption = caption_of(mesh), .tinting = tinting_of(executor, mesh, metric, options)};
+  look.axis = in_plane ? 2 : options.cut_axis < 0 ? thinnest_axis(mesh) : options.cut_axis;
+  const bool by_reference = !in_plane && !look.tinting.facet_colour;
+  const Legend listed = reference_legend(mesh, 2, "surface", mesh.triangles.reference);
+  if (by_reference && listed.references.size() > 1) look.legends.push_back(listed);
+  if (!shows_metric && !(by_reference && mesh.tetrahedra.size() == 0))
+    look.legends.push_back(look.tinting.legend);
+  return look;
+}
+
+Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+                 const SceneOptions& options) {
+  const Look look = look_at(executor, mesh, metric, options);
+  const AnyField* const shown = options.tint == Tint::metric ? metric : nullptr;
+  Scene scene{.caption = look.caption, .panels = {}, .legends = look.legends};
+  if (mesh.dimension == 2) {
+    scene.panels.push_back(panel_2d(mesh, look.tinting.colour_of));
+    if (shown) add_ellipses_2d(scene, mesh, *shown);
     return scene;
   }
-  scene.panels.push_back(panel_2d(mesh, tinting.colour_of));
-  if (shown)
-    add_ellipses_2d(scene, mesh, *shown);
-  else
-    scene.legends.push_back(tinting.legend);
+  const Camera camera = camera_along(look.axis);
+  scene.panels.push_back(surface_panel(mesh, camera, look.tinting.facet_colour));
+  if (mesh.tetrahedra.size() > 0)
+    scene.panels.push_back(cut_panel(mesh, look.tinting.colour_of, camera, look.axis));
+  if (shown) add_ellipses_3d(scene, mesh, *shown, camera, look.axis);
   return scene;
+}
+
+Panel panel_2d(const AnyMesh& mesh, const std::vector<Colour>& colour_of) {
+  Panel panel;
+  panel.faces.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& v = mesh.triangles.vertices[t];
+    panel.faces.push_back(
+        {{point(mesh, v[0]), point(mesh, v[1]), point(mesh, v[2])}, 3, colour_of[t]});
+  }
+  // Lines where a triangle has no neighbour or one of another reference, and where one is listed.
+  const std::vector<Side> sides = all_sides(mesh);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const bool paired = i + 1 < sides.size() && sides[i].first == sides[i + 1].first;
+    if (!paired || sides[i].second != sides[i + 1].second)
+      panel.lines.push_back(
+          {point(mesh, sides[i].first.first), point(mesh, sides[i].first.second)});
+    if (paired) ++i;
+  }
+  for (const auto& edge : mesh.edges.vertices)
+    panel.lines.push_back({point(mesh, edge[0]), point(mesh, edge[1])});
+  return panel;
 }
 
 }  // namespace ductile::cli

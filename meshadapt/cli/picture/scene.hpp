@@ -9,7 +9,6 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "camera.hpp"
@@ -69,13 +68,13 @@ struct Scene {
 struct SceneOptions {
   Tint tint = Tint::quality;
   int cut_axis = -1;  ///< normal of the cut through the middle: 0, 1, 2; -1: chosen by the shape
-  const meshadapt::NamedField* field = nullptr;  ///< for Tint::field: scalars of this mesh
+  const NamedField* field = nullptr;  ///< for Tint::field: scalars of this mesh
 };
 
 /// `metric` as in measure(): it says what quality means; null for Euclidean. For Tint::metric it is
 /// what is drawn. Throws InputError if there is nothing to draw.
-Scene make_scene(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
-                 const meshadapt::AnyField* metric, const SceneOptions& options);
+Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+                 const SceneOptions& options);
 
 // ---- For the two kinds of scenes ----
 
@@ -89,37 +88,33 @@ struct Tinting {
   Legend legend{};
   FacetColour facet_colour{};  ///< of the surface; none: by reference
 };
-Tinting tint_by_field(const meshadapt::AnyMesh& mesh, const meshadapt::NamedField& field);
-Tinting tint_elements(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
-                      const meshadapt::AnyField* metric, Tint tint);
-/// By whichever of them the options ask for.
-Tinting tinting_of(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
-                   const meshadapt::AnyField* metric, const SceneOptions& options);
 
-Panel panel_2d(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of);
+/// How a mesh is shown, in a picture or on a page.
+struct Look {
+  std::string caption;
+  Tinting tinting;
+  std::vector<Legend> legends{};  ///< without that of ellipses
+  int axis = 2;                   ///< of the cut
+};
+Look look_at(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+             const SceneOptions& options);
+
+Panel panel_2d(const AnyMesh& mesh, const std::vector<Colour>& colour_of);
 
 /// The surface, in the colours of its references if none are given, seen from outside.
-Panel surface_panel(const meshadapt::AnyMesh& mesh, const Camera& camera,
-                    const FacetColour& colour = {});
+Panel surface_panel(const AnyMesh& mesh, const Camera& camera, const FacetColour& colour = {});
 
 /// The part behind a plane through the middle, and the elements that the plane cuts.
-Panel cut_panel(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of,
-                const Camera& camera, int axis);
+Panel cut_panel(const AnyMesh& mesh, const std::vector<Colour>& colour_of, const Camera& camera,
+                int axis);
 
 /// Adds the unit ellipses of a metric at vertices, and the legend for them; of a solid, those in
 /// which the plane through the middle cuts the unit ellipsoids.
-void add_ellipses_2d(Scene& scene, const meshadapt::AnyMesh& mesh,
-                     const meshadapt::AnyField& metric);
-void add_ellipses_3d(Scene& scene, const meshadapt::AnyMesh& mesh,
-                     const meshadapt::AnyField& metric, const Camera& camera, int axis);
-
-/// The axis along which a solid is thinnest; front to back if it is about as thick everywhere.
-int thinnest_axis(const meshadapt::AnyMesh& mesh);
+void add_ellipses_2d(Scene& scene, const AnyMesh& mesh, const AnyField& metric);
+void add_ellipses_3d(Scene& scene, const AnyMesh& mesh, const AnyField& metric,
+                     const Camera& camera, int axis);
 
 /// Puts the ends of a logarithmic scale apart if they are about the same.
 void widen(Legend& legend);
-
-/// Each value once, in order.
-std::vector<std::int32_t> distinct(std::vector<std::int32_t> references);
 
 }  // namespace ductile::cli

@@ -1,15 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/meshadapt/simplex.hpp"
 #include "scene.hpp"
-#include "section.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-using meshadapt::AnyMesh;
 using Triangle = std::array<std::uint32_t, 3>;
 
 Triangle sorted(Triangle t) {
@@ -31,11 +28,10 @@ std::vector<Skin> facets_of_one(const AnyMesh& mesh) {
   facets.reserve(4 * mesh.tetrahedra.size());
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
     for (int i = 0; i < 4; ++i) {
-      const Triangle corners = meshadapt::facet_of<3>(mesh.tetrahedra.vertices[e], i);
+      const Triangle corners = facet_of<3>(mesh.tetrahedra.vertices[e], i);
       facets.push_back({sorted(corners), corners, 0, e});
     }
-  std::sort(facets.begin(), facets.end(),
-            [](const Skin& a, const Skin& b) { return a.key < b.key; });
+  std::ranges::sort(facets, {}, &Skin::key);
   std::vector<Skin> skin;
   for (std::size_t i = 0; i < facets.size(); ++i) {
     if (i + 1 < facets.size() && facets[i].key == facets[i + 1].key)
@@ -56,11 +52,10 @@ std::vector<Skin> make_skin(const AnyMesh& mesh) {
     listed.push_back({sorted(corners), corners, mesh.triangles.reference[t], t});
   }
   if (mesh.tetrahedra.size() == 0) return listed;
-  const auto by_key = [](const Skin& a, const Skin& b) { return a.key < b.key; };
-  std::sort(listed.begin(), listed.end(), by_key);
+  std::ranges::sort(listed, {}, &Skin::key);
   std::vector<Skin> skin = facets_of_one(mesh);
   for (Skin& facet : skin) {
-    const auto found = std::lower_bound(listed.begin(), listed.end(), facet, by_key);
+    const auto found = std::ranges::lower_bound(listed, facet.key, {}, &Skin::key);
     if (found != listed.end() && found->key == facet.key) facet.reference = found->reference;
   }
   return skin;
@@ -73,11 +68,9 @@ struct DeepFace {
 };
 
 std::vector<Face> back_to_front(std::vector<DeepFace> deep) {
-  std::sort(deep.begin(), deep.end(),
-            [](const DeepFace& a, const DeepFace& b) { return a.depth < b.depth; });
-  std::vector<Face> faces;
-  faces.reserve(deep.size());
-  for (const DeepFace& d : deep) faces.push_back(d.face);
+  std::ranges::sort(deep, {}, &DeepFace::depth);
+  std::vector<Face> faces(deep.size());
+  std::ranges::transform(deep, faces.begin(), &DeepFace::face);
   return faces;
 }
 
@@ -119,9 +112,9 @@ std::vector<Face> visible_faces(const AnyMesh& mesh, const Camera& camera, auto&
   const bool closed = mesh.tetrahedra.size() > 0;
   std::vector<DeepFace> deep;
   for (const Skin& facet : make_skin(mesh)) {
-    const Position a = meshadapt::position_in<3>(mesh, facet.corners[0]),
-                   b = meshadapt::position_in<3>(mesh, facet.corners[1]),
-                   c = meshadapt::position_in<3>(mesh, facet.corners[2]);
+    const Position a = position_in<3>(mesh, facet.corners[0]),
+                   b = position_in<3>(mesh, facet.corners[1]),
+                   c = position_in<3>(mesh, facet.corners[2]);
     const Position normal = cross(b - a, c - a);
     if (norm(normal) == 0 || (closed && dot(normal, camera.towards) <= 0)) continue;
     const std::vector<Position> polygon = shape(std::vector<Position>{a, b, c});
@@ -132,17 +125,6 @@ std::vector<Face> visible_faces(const AnyMesh& mesh, const Camera& camera, auto&
 }
 
 }  // namespace
-
-int thinnest_axis(const AnyMesh& mesh) {
-  int thinnest = 1;
-  const auto width = [&](int axis) {
-    const Span span = span_along(mesh, axis);
-    return span.to - span.from;
-  };
-  for (const int axis : {0, 2})
-    if (width(axis) < 0.8 * width(thinnest)) thinnest = axis;
-  return thinnest;
-}
 
 Panel surface_panel(const AnyMesh& mesh, const Camera& camera, const FacetColour& colour) {
   Panel panel{.title = "surface"};

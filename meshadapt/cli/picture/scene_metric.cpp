@@ -2,22 +2,17 @@
 /// Scenes of a metric: unit ellipses over faint elements.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
 #include "ductile/meshadapt/metric.hpp"
 #include "ellipses.hpp"
+#include "report.hpp"
 #include "scene.hpp"
-#include "section.hpp"
 
 namespace ductile::cli {
 
 namespace {
-
-using meshadapt::AnyField;
-using meshadapt::AnyMesh;
-using meshadapt::Metric;
 
 template <int Dim>
 Metric<Dim> metric_at(const AnyField& field, std::size_t vertex) {
@@ -27,21 +22,16 @@ Metric<Dim> metric_at(const AnyField& field, std::size_t vertex) {
 }
 
 double largest_extent(const AnyMesh& mesh) {
-  double extent = 0;
-  for (int axis = 0; axis < mesh.dimension; ++axis) {
-    const Span span = span_along(mesh, axis);
-    extent = std::max(extent, span.to - span.from);
-  }
-  return extent;
+  const Box<3> box = box_of(mesh);
+  const Position width = box.high - box.low;
+  return std::max({width[0], width[1], width[2]});
 }
 
 std::string title_of(const UnitEllipses& ellipses, const char* where) {
   std::string title = std::string("size that the metric asks for") + where + ", mean of both axes";
   if (ellipses.magnification == 1 && ellipses.all_magnified) return title + "; unit ellipses";
-  char factor[32];
-  std::snprintf(factor, sizeof factor, "%.6g", ellipses.magnification);
-  return title + "; unit ellipses, " + (ellipses.all_magnified ? "" : "most ") + factor +
-         " times as large";
+  return title + "; unit ellipses, " + (ellipses.all_magnified ? "" : "most ") +
+         format("%.6g times as large", ellipses.magnification);
 }
 
 /// Adds ellipses to the last panel. to_panel(p, 1) maps a point of the plane in which they were
