@@ -1,14 +1,10 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <limits>
 #include <map>
 #include <span>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "checks/faults.hpp"
@@ -21,6 +17,7 @@
 #include "mesh/boundary_surface.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/scale.hpp"
+#include "mesh/sorted_cells.hpp"
 
 namespace ductile::meshadapt {
 
@@ -48,21 +45,9 @@ double total(const std::map<std::int32_t, double>& sum_of) {
   return total;
 }
 
-/// Copies number by number, because copying whole points goes through memory and takes twice as
-/// long.
-template <int Dim, std::size_t N>
-std::array<Vector<Dim>, N> points(const AnyMesh& mesh,
-                                  const std::array<std::uint32_t, N>& corners) {
-  std::array<Vector<Dim>, N> at;
-  for (std::size_t i = 0; i < N; ++i)
-    for (std::size_t k = 0; k < Dim; ++k)
-      at[i].x[k] = mesh.coordinates[corners[i] * std::size_t{Dim} + k];
-  return at;
-}
-
 template <int Dim>
 double facet_measure(const AnyMesh& mesh, const Facet<Dim>& facet) {
-  return norm(facet_normal(points<Dim>(mesh, facet))) / (Dim == 2 ? 1 : 2);
+  return norm(facet_normal(points_in<Dim>(mesh, facet))) / (Dim == 2 ? 1 : 2);
 }
 
 /// Measures of the elements and of the listed facets, by reference.
@@ -76,7 +61,7 @@ Measures measures(const AnyMesh& mesh) {
   const auto& facets = facets_in<Dim>(mesh);
   return {sums(elements.reference,
                [&](std::size_t e) {
-                 const auto corners = points<Dim>(mesh, elements.vertices[e]);
+                 const auto corners = points_in<Dim>(mesh, elements.vertices[e]);
                  return std::abs(plain_determinant(corners)) / (Dim == 2 ? 2 : 6);
                }),
           sums(facets.reference,
@@ -98,12 +83,10 @@ std::map<std::int32_t, double> boundary_measures(const AdjacentMesh& mesh) {
 /// Measure of the boundary facets that are not listed.
 template <int Dim>
 double unlisted_measure(const AdjacentMesh& mesh) {
-  std::vector<Facet<Dim>> listed = facets_in<Dim>(mesh.mesh()).vertices;
-  for (Facet<Dim>& facet : listed) std::sort(facet.begin(), facet.end());
-  std::sort(listed.begin(), listed.end());
+  const auto listed = sorted_cells(mesh.executor(), facets_in<Dim>(mesh.mesh()).vertices);
   double sum = 0;
   for (const BoundarySide<Dim>& side : sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>()))
-    if (!std::binary_search(listed.begin(), listed.end(), side.corners))
+    if (find_cell<Dim>(listed, side.corners) == none)
       sum += facet_measure<Dim>(mesh.mesh(), side.corners);
   return sum;
 }
@@ -123,14 +106,9 @@ void compare(const std::string& what, double now, double expected, double allowe
 /// Measures of the facets by reference; a facet listed repeatedly counts once, by its first
 /// reference, as in make_mesh.
 template <int Dim>
-std::map<std::int32_t, double> measures_listed_once(const AnyMesh& mesh) {
+std::map<std::int32_t, double> measures_listed_once(const Executor& executor, const AnyMesh& mesh) {
   const auto& facets = facets_in<Dim>(mesh);
-  std::vector<std::pair<Facet<Dim>, std::size_t>> by_corners;
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    by_corners.emplace_back(facets.vertices[f], f);
-    std::sort(by_corners.back().first.begin(), by_corners.back().first.end());
-  }
-  std::sort(by_corners.begin(), by_corners.end());
+  const auto by_corners = sorted_cells(executor, facets.vertices);
   std::map<std::int32_t, double> sum_of;
   for (std::size_t i = 0; i < by_corners.size(); ++i)
     if (i == 0 || by_corners[i].first != by_corners[i - 1].first)
@@ -144,7 +122,7 @@ template <int Dim>
 double rough_measure(const AnyMesh& mesh, double roughness) {
   double sum = 0;
   for (const Facet<Dim>& facet : facets_in<Dim>(mesh).vertices) {
-    const auto p = points<Dim>(mesh, facet);
+    const auto p = points_in<Dim>(mesh, facet);
     double longest = 0;
     for (std::size_t i = 0; i < Dim; ++i)
       longest = std::max(longest, norm(p[(i + 1) % Dim] - p[i]));
@@ -214,7 +192,9 @@ class DomainChecker {
       rough = rough_measure<Dim>(before_, roughness) + rough_measure<Dim>(after_, roughness);
     const double of_facets = 1e-9 * boundary + slack * rim + rough;
     auto found = faults_of_facets(old_.facets, of_facets);
-    if (!found.empty()) found = faults_of_facets(measures_listed_once<Dim>(before_), of_facets);
+    if (!found.empty())
+      found = faults_of_facets(measures_listed_once<Dim>(adjacent_before_.executor(), before_),
+                               of_facets);
     faults.insert(faults.end(), found.begin(), found.end());
     compare_non_manifold(faults);
     return faults;

@@ -3,10 +3,8 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "checks/faults.hpp"
@@ -17,6 +15,8 @@
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "mesh/scale.hpp"
+#include "mesh/sorted_cells.hpp"
 
 namespace ductile::meshadapt {
 
@@ -102,11 +102,7 @@ class AnyMeshChecker {
   // ---- Volumes ----
 
   int orientation_of(std::size_t element) const {
-    std::array<Vector<Space>, Dim + 1> p;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      for (std::size_t axis = 0; axis < Space; ++axis)
-        p[i].x[axis] =
-            mesh_.coordinates[elements().vertices[element][i] * std::size_t{Space} + axis];
+    const auto p = points_in<Space>(mesh_, elements().vertices[element]);
     if constexpr (Dim < Space)
       return certain_area(p[0], p[1], p[2]) > 0 ? 1 : 0;
     else
@@ -198,12 +194,7 @@ class AnyMeshChecker {
 
   /// Of a surface, because facets show that of other meshes.
   void check_doubled() {
-    std::vector<std::pair<Corners<Dim>, std::size_t>> key(elements().size());
-    parallel_for(executor_, key.size(), [&](std::size_t e) {
-      key[e] = {elements().vertices[e], e};
-      std::sort(key[e].first.begin(), key[e].first.end());
-    });
-    runtime::parallel_sort(executor_, std::span(key));
+    const auto key = sorted_cells(executor_, elements().vertices);
     problems_.expect_none(
         key.size(), [&](std::size_t i) { return i != 0 && key[i].first == key[i - 1].first; },
         [&](std::size_t i) {

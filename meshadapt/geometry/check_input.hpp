@@ -32,11 +32,4 @@ Wording cell_word(const std::string& kind, std::size_t index);
 /// Throws InputError with a message about the mesh.
 [[noreturn]] void refuse_mesh(const AnyMesh& mesh, const Wording& what);
 
-extern template void check_input<2>(const runtime::Executor&, const AnyMesh&,
-                                    const MakeMeshOptions&);
-extern template void check_input<2, 3>(const runtime::Executor&, const AnyMesh&,
-                                       const MakeMeshOptions&);
-extern template void check_input<3>(const runtime::Executor&, const AnyMesh&,
-                                    const MakeMeshOptions&);
-
 }  // namespace ductile::meshadapt

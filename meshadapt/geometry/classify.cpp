@@ -1,10 +1,6 @@
 #include "geometry/classify.hpp"
 
-#include <array>
-#include <cstdint>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/boundary_parts.hpp"

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
@@ -135,27 +133,22 @@ class PatchFinder {
   }
 
   void join_patches() {
-    std::vector<PatchId> joined(
-        parts_.mesh.patches.size());  // [patch], another of the same, or itself
-    std::iota(joined.begin(), joined.end(), 0);
-    const auto find = [&](PatchId p) {
-      while (joined[p] != p) p = joined[p] = joined[joined[p]];
-      return p;
-    };
+    runtime::DisjointSets joined(parts_.executor, parts_.mesh.patches.size());
     for (const FacetSide& side : parts_.sides) {
       const std::uint32_t f = side.facet, g = beside_[f][side.number];
       if (g == none || g < f || parts_.mesh.patches[parts_.facets[f].patch].required ||
           keeps_shape(parts_.facets[f]) || keeps_shape(parts_.facets[g]))
         continue;
-      const PatchId p = find(parts_.facets[f].patch), q = find(parts_.facets[g].patch);
+      const PatchId p = joined.lowest(parts_.facets[f].patch);
+      const PatchId q = joined.lowest(parts_.facets[g].patch);
       if (p == q || !may_join(f, g, side.key)) continue;
-      joined[std::max(p, q)] = std::min(p, q);
+      joined.unite(p, q);
       parts_.mesh.patches[p].smooth = parts_.mesh.patches[q].smooth = true;
     }
     parts_.plane_of.reserve(parts_.facets.size());
     for (TaggedFacet<Dim>& facet : parts_.facets) {
       parts_.plane_of.push_back(facet.patch);
-      facet.patch = find(facet.patch);
+      facet.patch = joined.lowest(facet.patch);
     }
     for (std::uint32_t f = 0; f < parts_.facets.size(); ++f) {
       Patch<Dim>& patch = parts_.mesh.patches[parts_.facets[f].patch];

@@ -49,12 +49,7 @@ class CrossingFacets {
 
   const Cells<Dim>& facets() const { return facets_in<Dim>(mesh_); }
 
-  Points points(std::size_t f) const {
-    Points result;
-    for (std::size_t i = 0; i < Dim; ++i)
-      result[i] = position_in<Dim>(mesh_, facets().vertices[f][i]);
-    return result;
-  }
+  Points points(std::size_t f) const { return points_in<Dim>(mesh_, facets().vertices[f]); }
 
   bool has_vertex(std::size_t f, std::uint32_t v) const {
     const auto& corners = facets().vertices[f];

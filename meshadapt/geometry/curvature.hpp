@@ -26,9 +26,4 @@ template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of);
 
-extern template void bound_curved_sizes(const runtime::Executor&, const Mesh<2>&, double,
-                                        std::vector<Metric<2>>&);
-extern template void bound_curved_sizes(const runtime::Executor&, const Mesh<3>&, double,
-                                        std::vector<Metric<3>>&);
-
 }  // namespace ductile::meshadapt

@@ -29,12 +29,8 @@ class CurvatureFit {
   explicit CurvatureFit(const Vector<Dim>& direction) : direction_(direction) {
     along_[0] = direction;
     if constexpr (Corners == 3) {
-      int least = 0;
-      for (int i = 1; i < Dim; ++i)
-        if (std::abs(direction[i]) < std::abs(direction[least])) least = i;
-      Vector<Dim> axis;
-      axis[least] = 1;
-      along_[0] = unit(axis - direction[least] * direction);
+      const Vector<Dim> axis = axis_across(direction);
+      along_[0] = unit(axis - dot(axis, direction) * direction);
       along_[1] = cross(direction, along_[0]);
     }
   }

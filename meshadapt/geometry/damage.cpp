@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <span>
-#include <utility>
 
 #include "ductile/runtime/worklist.hpp"
 #include "geometry/crossing_facets.hpp"
@@ -17,9 +16,7 @@ using runtime::Executor;
 
 template <int Dim>
 Box<Dim> box_of(const AnyMesh& mesh, const Facet<Dim>& facet) {
-  std::array<Vector<Dim>, Dim> at;
-  for (std::size_t i = 0; i < Dim; ++i) at[i] = position_in<Dim>(mesh, facet[i]);
-  return box_around(at);
+  return box_around(points_in<Dim>(mesh, facet));
 }
 
 template <int Dim>
@@ -162,11 +159,7 @@ std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
   const auto sides = sides_in<Dim>(mesh);
   auto near = runtime::parallel_collect<std::uint32_t>(
       executor, sides.size(), [&](std::size_t s, auto&& append) {
-        Box<Dim> box = box_of<Dim>(mesh.mesh(), sides[s].corners);
-        for (int i = 0; i < Dim; ++i) {
-          box.low[i] -= distance;
-          box.high[i] += distance;
-        }
+        const auto box = grown(box_of<Dim>(mesh.mesh(), sides[s].corners), distance);
         bool found = false;
         index.each_meeting(box, [&](std::size_t) { found = true; });
         if (!found) return;

@@ -23,13 +23,4 @@ std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   const std::vector<Box<Dim>>& places,
                                                   double distance);
 
-extern template std::vector<Box<2>> damaged_places<2>(const AdjacentMesh&, const AdjacentMesh&);
-extern template std::vector<Box<3>> damaged_places<3>(const AdjacentMesh&, const AdjacentMesh&);
-extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
-                                                                  const std::vector<Box<2>>&,
-                                                                  double);
-extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
-                                                                  const std::vector<Box<3>>&,
-                                                                  double);
-
 }  // namespace ductile::meshadapt

@@ -1,7 +1,6 @@
 #include "geometry/boundary_parts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/unit.hpp"

@@ -95,6 +95,23 @@ class FacetSides {
   runtime::UnsetVector<FacetSide> sides_;
 };
 
+/// Do two triangles pass a side that they share in the same direction, so that one is turned over
+/// against the other?
+inline bool are_opposite(const std::vector<Corners<2>>& triangles, const FacetSide& side,
+                         const FacetSide& other) {
+  return triangles[side.facet][side.number] == triangles[other.facet][other.number];
+}
+
+/// The sides of two triangles that are turned in opposite ways.
+inline std::vector<SideKey> seams_of(const FacetSides<3>& sides,
+                                     const std::vector<Corners<2>>& triangles) {
+  std::vector<SideKey> seams;
+  sides.each_run([&](std::span<const FacetSide> run) {
+    if (run.size() == 2 && are_opposite(triangles, run[0], run[1])) seams.push_back(run[0].key);
+  });
+  return seams;
+}
+
 /// Normal of a facet; its length is the edge's length in 2D, twice the area in 3D.
 template <int Dim>
 Vector<Dim> normal_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {

@@ -1,9 +1,12 @@
 /// @file
-/// fill_mesh: copies vertices and elements of a file's mesh into one that is to be adapted.
+/// The first steps from a file's mesh to one that is to be adapted: its vertices and elements, and
+/// their neighbours. Thread safety of all: one caller; runs on the executor.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -11,11 +14,13 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/marked_points.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/neighbours.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
 /// Fills an empty mesh: positions, references, corners, required vertices and elements, which lie
-/// on no patch yet. Thread safety: one caller; runs on the executor.
+/// on no patch yet.
 template <int Dim, int Space>
 void fill_mesh(const runtime::Executor& executor, const AnyMesh& any,
                const std::vector<Corners<Dim>>& corners, Mesh<Dim, Space>& mesh) {
@@ -37,6 +42,32 @@ void fill_mesh(const runtime::Executor& executor, const AnyMesh& any,
     mesh.patches_of[e].fill(0);
     mesh.changed_at[e] = mesh.epoch;
   });
+}
+
+/// Warns of vertices that belong to no element.
+template <int Dim, int Space>
+void report_unused_vertices(const runtime::Executor& executor, const AnyMesh& any,
+                            const Mesh<Dim, Space>& mesh, std::vector<std::string>& warnings) {
+  const auto unused = runtime::parallel_reduce(
+      executor, mesh.vertex_slots(), std::size_t{0},
+      [&](std::size_t v) { return std::size_t{!mesh.vertex_alive(static_cast<VertexId>(v))}; },
+      std::plus<>());
+  if (unused != 0)
+    warnings.push_back(name_of(any) + ": " + std::to_string(unused) + " of " +
+                       std::to_string(mesh.vertex_slots()) + " vertices belong to no " +
+                       (Dim < Space ? "triangle" : "element") + " and are left out");
+}
+
+/// Sets the neighbours of elements, see the function of mesh/neighbours.hpp.
+template <int Dim, int Space>
+void find_neighbours(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                     Neighbours<Dim>& neighbours) {
+  runtime::FreshMemory fresh;
+  neighbours.resize_for_overwrite(mesh.element_slots(), fresh);
+  fresh.touch(executor);
+  find_neighbours<Dim>(
+      executor, mesh.corners_of, mesh.vertex_slots(),
+      [&mesh](VertexId v) { return mesh.elements_of.of(v); }, neighbours);
 }
 
 }  // namespace ductile::meshadapt

@@ -1,5 +1,6 @@
 #include "ductile/meshadapt/geometry.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,14 +69,12 @@ std::optional<GeometryPoint> closest_in(const ReferenceSurface<Dim>& reference,
                                         const std::array<double, 3>& point, double reach) {
   if (!reference.surface) return {};
   Vector<Dim> from;
-  for (int i = 0; i < Dim; ++i) from[i] = point[static_cast<std::size_t>(i)];
+  std::copy_n(point.begin(), Dim, from.x.begin());
   const auto found = reference.surface->facets.nearest(from, reach);
   if (!found) return {};
   GeometryPoint result{{}, {}, reference.reference_of[found->sheet]};
-  for (int i = 0; i < Dim; ++i) {
-    result.position[static_cast<std::size_t>(i)] = found->point[i];
-    result.normal[static_cast<std::size_t>(i)] = found->direction[i];
-  }
+  std::ranges::copy(found->point.x, result.position.begin());
+  std::ranges::copy(found->direction.x, result.normal.begin());
   return result;
 }
 

@@ -6,7 +6,6 @@
 
 #include "core/first_bad.hpp"
 #include "core/orientation.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
@@ -35,8 +34,12 @@ class MeshMaker {
     fill();
     orient();
     rebuild_elements_of(executor_, mesh_);
-    report_unused_vertices();
-    find_neighbours();
+    report_unused_vertices(executor_, any_, mesh_, warnings_);
+    find_neighbours(executor_, mesh_, neighbours_);
+    const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
+      return contains(neighbours_[e], crowded);
+    });
+    if (bad != no_index) fail_crowded(static_cast<ElementId>(bad));
     auto facets = tag_facets(making_);
     classify(executor_, mesh_, std::move(facets), tag_edges(making_), making_.options);
     return std::move(mesh_);
@@ -113,32 +116,6 @@ class MeshMaker {
                           " elements were listed the other way round and have been turned; the "
                           "first is " +
                           entity(element_name<Dim>(), static_cast<std::size_t>(first)));
-  }
-
-  void report_unused_vertices() {
-    const auto unused = runtime::parallel_reduce(
-        executor_, mesh_.vertex_slots(), std::size_t{0},
-        [&](std::size_t v) { return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))}; },
-        [](std::size_t a, std::size_t b) { return a + b; });
-    if (unused != 0)
-      warnings_.push_back(name_of(any_) + ": " + std::to_string(unused) + " of " +
-                          std::to_string(mesh_.vertex_slots()) +
-                          " vertices belong to no element and are left out");
-  }
-
-  // ---- Neighbours ----
-
-  void find_neighbours() {
-    runtime::FreshMemory fresh;
-    neighbours_.resize_for_overwrite(mesh_.element_slots(), fresh);
-    fresh.touch(executor_);
-    meshadapt::find_neighbours<Dim>(
-        executor_, mesh_.corners_of, mesh_.vertex_slots(),
-        [this](VertexId v) { return mesh_.elements_of.of(v); }, neighbours_);
-    const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
-      return contains(neighbours_[e], crowded);
-    });
-    if (bad != no_index) fail_crowded(static_cast<ElementId>(bad));
   }
 
   [[noreturn]] void fail_crowded(ElementId element) const {

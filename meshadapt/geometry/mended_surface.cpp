@@ -1,19 +1,17 @@
 #include <algorithm>
-#include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/determinant.hpp"
 #include "core/first_bad.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/sort.hpp"
 #include "geometry/check_input.hpp"
+#include "geometry/facet_sides.hpp"
 #include "geometry/surface_mesh.hpp"
-#include "geometry/triangle_edges.hpp"
+#include "mesh/scale.hpp"
+#include "mesh/sorted_cells.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -46,25 +44,15 @@ class SurfaceMender {
   }
 
  private:
-  std::array<Vector<3>, 3> points(std::size_t t) const {
-    std::array<Vector<3>, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = position_in<3>(any_, any_.triangles.vertices[t][i]);
-    return p;
-  }
-
   /// Lists the triangles that have an area, each once.
   void choose() {
     const auto& triangles = any_.triangles.vertices;
-    using Keyed = std::pair<std::array<VertexId, 3>, std::uint32_t>;
-    auto keyed = runtime::make_unset_vector<Keyed>(executor_, triangles.size());
+    const auto keyed = sorted_cells(executor_, triangles);
     std::vector<std::uint8_t> left_out(triangles.size(), 0);
     parallel_for(executor_, triangles.size(), [&](std::size_t t) {
-      keyed[t] = {triangles[t], static_cast<std::uint32_t>(t)};
-      std::sort(keyed[t].first.begin(), keyed[t].first.end());
-      const auto [a, b, c] = points(t);
+      const auto [a, b, c] = points_in<3>(any_, triangles[t]);
       if (!(certain_area(a, b, c) > 0)) left_out[t] = 1;
     });
-    runtime::parallel_sort(executor_, std::span(keyed));
     for (std::size_t i = 1; i < keyed.size(); ++i)
       if (keyed[i].first == keyed[i - 1].first && left_out[keyed[i].second] == 0)
         left_out[keyed[i].second] = 2;
@@ -91,12 +79,13 @@ class SurfaceMender {
     corners_.resize(chosen_.size());
     parallel_for(executor_, chosen_.size(),
                  [&](std::size_t e) { corners_[e] = any_.triangles.vertices[chosen_[e]]; });
-    const TriangleEdges edges(executor_, corners_);
-    if (edges.seams().empty()) return;
+    const FacetSides<3> sides(executor_, corners_.size(),
+                              [&](std::size_t e) { return corners_[e]; });
+    if (seams_of(sides, corners_).empty()) return;
     std::vector<std::uint8_t> turned(corners_.size(), none_yet);
     std::vector<ElementId> part;
     for (ElementId seed = 0; seed < corners_.size(); ++seed)
-      if (turned[seed] == none_yet) turn_part(edges, seed, turned, part);
+      if (turned[seed] == none_yet) turn_part(sides, seed, turned, part);
     std::vector<std::uint8_t> listed(any_.triangles.size(), 0);
     for (std::size_t e = 0; e < corners_.size(); ++e) {
       listed[chosen_[e]] = turned[e];
@@ -106,21 +95,22 @@ class SurfaceMender {
   }
 
   /// Turns what is connected with a triangle by edges of two as that is, or as most of it is.
-  void turn_part(const TriangleEdges& edges, ElementId seed, std::vector<std::uint8_t>& turned,
+  void turn_part(const FacetSides<3>& sides, ElementId seed, std::vector<std::uint8_t>& turned,
                  std::vector<ElementId>& part) const {
     part.assign(1, seed);
     turned[seed] = 0;
     std::size_t count = 0;
     for (std::size_t at = 0; at < part.size(); ++at)
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto& corners = corners_[part[at]];
-        const auto [other, opposite] =
-            edges.across(edge_key(corners[i], corners[next_corner(i)]), part[at]);
-        if (other == none || turned[other] != none_yet) continue;
-        turned[other] = turned[part[at]] ^ static_cast<std::uint8_t>(opposite);
+      each_side<3>(corners_[part[at]], [&](SideKey key) {
+        const auto both = sides.at(key);
+        if (both.size() != 2) return;
+        const ElementId other = both[both[0].facet == part[at] ? 1 : 0].facet;
+        if (turned[other] != none_yet) return;
+        turned[other] =
+            turned[part[at]] ^ static_cast<std::uint8_t>(are_opposite(corners_, both[0], both[1]));
         count += turned[other];
         part.push_back(other);
-      }
+      });
     if (2 * count > part.size())
       for (const ElementId e : part) turned[e] ^= 1U;
   }

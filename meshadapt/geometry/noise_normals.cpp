@@ -161,14 +161,9 @@ class NoiseNormals {
   static std::vector<Vector<Dim>> divisions(const Vector<Dim>& normal) {
     if constexpr (Dim == 2) return {{{-normal[1], normal[0]}}};
     constexpr int count = 8;
-    int least = 0;
-    for (int i = 1; i < Dim; ++i)
-      if (std::abs(normal[i]) < std::abs(normal[least])) least = i;
-    Vector<Dim> axis;
-    axis[least] = 1;
     std::vector<Vector<Dim>> directions;
     if constexpr (Dim == 3) {
-      const Vector<3> u = unit(cross(normal, axis)), v = cross(normal, u);
+      const Vector<3> u = unit(cross(normal, axis_across(normal))), v = cross(normal, u);
       for (int i = 0; i < count; ++i) {
         const double angle = i * std::numbers::pi / count;
         directions.push_back(std::cos(angle) * u + std::sin(angle) * v);

@@ -199,16 +199,9 @@ Samples<3, 3> PatchNormals::samples() const {
 
 /// By area, to the side of the largest facet.
 Vector<3> PatchNormals::mean_normal(Node node) const {
-  Vector<3> largest, sum;
-  for (const NodeFacet& at : facets_at(node)) {
-    const Vector<3> normal = facet_normal_of(at.facet);
-    if (dot(normal, normal) > dot(largest, largest)) largest = normal;
-  }
-  for (const NodeFacet& at : facets_at(node)) {
-    const Vector<3> normal = facet_normal_of(at.facet);
-    sum += std::copysign(1.0, dot(normal, largest)) * normal;
-  }
-  return unit(sum);
+  const auto facets = facets_at(node);
+  return mean_direction(facets.size(),
+                        [&](std::size_t i) { return facet_normal_of(facets[i].facet); });
 }
 
 Vector<3> PatchNormals::normal_at(Node node) const {

@@ -1,7 +1,6 @@
 #include "geometry/projection.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <set>
 #include <string>

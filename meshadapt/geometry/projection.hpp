@@ -2,7 +2,6 @@
 /// Projection: projects a point onto the user's surface functions.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -52,12 +51,5 @@ std::vector<Projection<3>> projections_of_curves(const Mesh<3>& mesh,
 
 /// Throws InputError unless there is one function of a reference at most, and none is empty.
 void expect_functions(std::span<const SurfaceFunction> functions);
-
-extern template std::vector<Projection<2>> projections_of_patches(const Mesh<2>&,
-                                                                  std::span<const SurfaceFunction>,
-                                                                  const Reach&);
-extern template std::vector<Projection<3>> projections_of_patches(const Mesh<3>&,
-                                                                  std::span<const SurfaceFunction>,
-                                                                  const Reach&);
 
 }  // namespace ductile::meshadapt

@@ -1,7 +1,6 @@
 #include "geometry/rounding.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
@@ -63,20 +62,16 @@ Flat<Dim> best_plane(std::span<const Vector<Dim>> points) {
 template <int Dim>
 std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance) {
   const Flat<Dim> plane = best_plane(points);
-  const bool near = std::all_of(points.begin(), points.end(), [&](const Vector<Dim>& p) {
-    return std::abs(dot(p - plane.origin, plane.direction)) <= distance;
-  });
-  if (!near) return {};
+  for (const Vector<Dim>& p : points)
+    if (!(std::abs(dot(p - plane.origin, plane.direction)) <= distance)) return {};
   return plane;
 }
 
 std::optional<Flat<3>> line_near(std::span<const Vector<3>> points, double distance) {
   const Spread<3> spread = spread_of_points(points);
   const Flat<3> line{spread.centre, spread.axis[2]};
-  const bool near = std::all_of(points.begin(), points.end(), [&](const Vector<3>& p) {
-    return norm(aside(line, p)) <= distance;
-  });
-  if (!near) return {};
+  for (const Vector<3>& p : points)
+    if (!(norm(aside(line, p)) <= distance)) return {};
   return line;
 }
 

@@ -75,8 +75,6 @@ bool explains_line(const Vector<3>& a, const Vector<3>& b, const Vector<3>& poin
 template <int Dim>
 double roughness(const AnyMesh& mesh);
 
-extern template double roughness<2>(const AnyMesh&);
-extern template double roughness<3>(const AnyMesh&);
 extern template struct Rounding<2>;
 extern template struct Rounding<3>;
 

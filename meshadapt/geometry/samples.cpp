@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/unit.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "geometry/sheets.hpp"

@@ -151,7 +151,7 @@ bool Sheets<Dim, Corners>::cover_closely(const Points& simplex, std::uint32_t sh
   const double margin = share * search.tolerance;
   Near covering;
   bool is_alone = true;
-  each_meeting(box_around(simplex, margin), [&](std::uint32_t part) {
+  each_meeting(grown(box_around(simplex), margin), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     const bool covers = turn >= Search::least_turn && shape_of_[part].sheet == sheet;
     if (covers) covering.push_back(part);
@@ -169,7 +169,7 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::direction_around(const Points& 
   if (!(height_of(simplex) < tolerance_)) return {};
   Near near;
   bool is_noisy = false;
-  each_meeting(box_around(simplex, tolerance_), [&](std::uint32_t part) {
+  each_meeting(grown(box_around(simplex), tolerance_), [&](std::uint32_t part) {
     if (parts_[part].sheet != sheet || parts_[part].two_sided) return;
     near.push_back(part);
     is_noisy = is_noisy || counts_as_turned(part);
@@ -183,7 +183,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
                                  const Search& search) const {
   Around around;
   Near beside;  // of other sheets, turned about as at a right angle
-  each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
+  each_meeting(grown(box_around(simplex), search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     const bool is_beside = shape_of_[part].sheet != sheet;
     if (is_beside && std::abs(turn) < Search::steepest) beside.push_back(part);
@@ -224,12 +224,6 @@ auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& c
   return weights;
 }
 
-template <int Dim, std::size_t Corners>
-Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
-  const auto weights = weights_at(point, closest);
-  return weights ? curved_[origin_of_[closest.part].facet].at(*weights) : closest.point;
-}
-
 /// The unit normal of a facet there, or the direction that counts as it; for an edge, its tangent.
 template <int Dim, std::size_t Corners>
 Vector<Dim> Sheets<Dim, Corners>::direction_at(const Vector<Dim>& point,
@@ -256,25 +250,6 @@ Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vecto
   return is_known(there) ? there : model;
 }
 
-/// Looks nearby first, because it is likely there; reach and tolerance may be large.
-template <int Dim, std::size_t Corners>
-std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
-                                                         std::uint32_t sheet, double reach) const {
-  const double most = reach + tolerance_;
-  double within = std::min(reach, tolerance_);
-  for (bool last = false; !last; within *= 4) {
-    last = !(within > 0 && within < most);
-    if (last) within = most;
-    Near near;
-    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
-      if (parts_[part].sheet == sheet) near.push_back(part);
-    });
-    const Closest best = near.closest(*this, point);
-    if (best.distance <= within) return on_sheet(point, on_model(point, best), sheet);
-  }
-  return {};
-}
-
 /// The point of the sheet near the closest point of its flat parts.
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest_at(const Vector<Dim>& point, const Closest& closest) const
@@ -292,22 +267,32 @@ auto Sheets<Dim, Corners>::nearest_at(const Vector<Dim>& point, const Closest& c
   return nearest;
 }
 
-/// The nearest of the parts for which is_wanted(part) holds. Looks nearby first.
+/// The nearest of the parts for which is_wanted(part) holds. Looks first where it is likely.
 template <int Dim, std::size_t Corners>
-auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
+auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double likely, double reach,
                                       auto&& is_wanted) const -> std::optional<Nearest> {
-  double within = std::min(reach, tolerance_);
+  double within = likely;
   for (bool last = false; !last; within *= 4) {
     last = !(within < reach);
     within = std::min(within, reach);
     Near near;
-    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
+    each_meeting(grown(box_around(std::array{point}), within), [&](std::uint32_t part) {
       if (is_wanted(part)) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);
     if (best.distance <= within) return nearest_at(point, best);
   }
   return {};
+}
+
+template <int Dim, std::size_t Corners>
+std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
+                                                         std::uint32_t sheet, double reach) const {
+  const double likely = std::clamp(reach, 1e-3 * tolerance_, tolerance_);
+  const auto nearest = nearest_of(point, likely, reach + tolerance_,
+                                  [&](std::uint32_t part) { return parts_[part].sheet == sheet; });
+  if (!nearest) return {};
+  return nearest->point;
 }
 
 template <int Dim, std::size_t Corners>
@@ -343,13 +328,14 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point,
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, double reach) const
     -> std::optional<Nearest> {
-  return nearest_of(point, reach, [](std::uint32_t) { return true; });
+  return nearest_of(point, tolerance_, reach, [](std::uint32_t) { return true; });
 }
 
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest_on(const Vector<Dim>& point, std::uint32_t sheet,
                                       double reach) const -> std::optional<Nearest> {
-  return nearest_of(point, reach, [&](std::uint32_t part) { return parts_[part].sheet == sheet; });
+  return nearest_of(point, tolerance_, reach,
+                    [&](std::uint32_t part) { return parts_[part].sheet == sheet; });
 }
 
 template <int Dim, std::size_t Corners>
@@ -357,7 +343,7 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& 
                                    std::span<const std::int32_t> reference_of,
                                    std::int32_t reference, double reach) const
     -> std::optional<Nearest> {
-  return nearest_of(point, reach, [&](std::uint32_t part) {
+  return nearest_of(point, tolerance_, reach, [&](std::uint32_t part) {
     const double cosine = dot(direction, shape_of_[part].direction);
     return reference_of[parts_[part].sheet] == reference &&
            (parts_[part].two_sided ? std::abs(cosine) : cosine) > 0.5;

@@ -21,17 +21,6 @@
 
 namespace ductile::meshadapt {
 
-/// The box around some points, with a margin.
-template <int Dim, std::size_t N>
-Box<Dim> box_around(const std::array<Vector<Dim>, N>& points, double margin) {
-  auto box = box_around(points);
-  for (int i = 0; i < Dim; ++i) {
-    box.low[i] -= margin;
-    box.high[i] += margin;
-  }
-  return box;
-}
-
 /// Unit normal of a facet, or along an edge in 3D; 0 if it is too small to have one.
 template <int Dim, std::size_t Corners>
 Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
@@ -161,12 +150,12 @@ class Sheets {
   Points facet_of(std::uint32_t part) const;
   std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,
                                                      const Closest& closest) const;
-  Vector<Dim> on_model(const Vector<Dim>& point, const Closest& closest) const;
   Vector<Dim> direction_at(const Vector<Dim>& point, const Closest& closest) const;
   Vector<Dim> on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
                        std::uint32_t sheet) const;
   Nearest nearest_at(const Vector<Dim>& point, const Closest& closest) const;
-  std::optional<Nearest> nearest_of(const Vector<Dim>& point, double reach, auto&& is_wanted) const;
+  std::optional<Nearest> nearest_of(const Vector<Dim>& point, double likely, double reach,
+                                    auto&& is_wanted) const;
 
   void each_meeting(const Box<Dim>& box, auto&& visit) const;
 

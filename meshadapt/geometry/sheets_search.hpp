@@ -205,7 +205,7 @@ struct Sheets<Dim, Corners>::Search {
 
   /// Those of some parts that may be within a distance of the simplex.
   Near close_to(const Points& simplex, double distance, const Near& parts) const {
-    Near near = inside(box_around(simplex, distance), parts);
+    Near near = inside(grown(box_around(simplex), distance), parts);
     const auto is_beyond = [&](std::uint32_t part) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (const Vector<Dim>& corner : sheets.parts_[part].corner) {
@@ -347,7 +347,7 @@ struct Sheets<Dim, Corners>::Search {
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
     return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {
-      const Around within = inside(box_around(part, tolerance), around);
+      const Around within = inside(grown(box_around(part), tolerance), around);
       return covered(part, graph_over(part, within.covering), within, whole, depth + 1);
     });
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/curve_tangents.hpp"
 #include "geometry/patch_normals.hpp"

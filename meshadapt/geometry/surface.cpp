@@ -4,7 +4,6 @@
 #include <array>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -174,9 +173,11 @@ class SurfaceMaker {
         if (!model.facets[f] || facets_[f].other != none) return false;
         const double reach = 4 * bend(*model.facets[f]);
         bool held = input.facets[f].held;
-        index.each_meeting(box_around(points(corners(facets_[f])), reach), [&](std::uint32_t g) {
-          held = held || (is_facing(f, g, reach) && (!is_wall(f, g) || comes_closer(model, f, g)));
-        });
+        index.each_meeting(
+            grown(box_around(points(corners(facets_[f]))), reach), [&](std::uint32_t g) {
+              held =
+                  held || (is_facing(f, g, reach) && (!is_wall(f, g) || comes_closer(model, f, g)));
+            });
         input.facets[f].held = held;
         return held;
       };
@@ -223,7 +224,7 @@ class SurfaceMaker {
     const auto own = parts_of(facet), others = parts_of(other);
     return std::any_of(own.begin(), own.end(), [&](const auto& p) {
       return std::any_of(others.begin(), others.end(), [&](const auto& q) {
-        return meet(box_around(p, least), box_around(q)) && gap(p, q) < least;
+        return meet(grown(box_around(p), least), box_around(q)) && gap(p, q) < least;
       });
     });
   }

@@ -3,12 +3,6 @@
 /// it was adapted, and how far from it adaptation may go.
 #pragma once
 
-#include <array>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/sheets.hpp"

@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
 #include <span>
 #include <utility>
 
-#include "core/first_bad.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/curvature.hpp"
+#include "geometry/facet_sides.hpp"
 #include "geometry/fill_mesh.hpp"
 #include "geometry/tag_boundary.hpp"
-#include "geometry/triangle_edges.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
 
@@ -28,6 +25,9 @@ namespace {
 
 /// The number of the facet that is the triangle, in an element without a fourth corner.
 constexpr int boundary_facet = 3;
+
+/// The next corner of a triangle.
+constexpr std::size_t next_corner(std::size_t corner) { return (corner + 1) % 3; }
 
 /// A surface as the boundary of elements that have no fourth corner; without patches and curves.
 Mesh<3> as_boundary(const Executor& executor, const Mesh<2, 3>& mesh) {
@@ -91,13 +91,15 @@ class SurfaceMeshMaker {
         neighbours_(neighbours),
         warnings_(warnings),
         corners_(any.triangles.vertices),
-        edges_(executor, corners_) {}
+        sides_(executor, corners_.size(), [&](std::size_t e) { return corners_[e]; }) {}
 
   Mesh<2, 3> make() {
     fill();
     rebuild_elements_of(executor_, mesh_);
-    report_unused_vertices();
-    find_neighbours();
+    report_unused_vertices(executor_, any_, mesh_, warnings_);
+    find_neighbours(executor_, mesh_, neighbours_);
+    parallel_for(executor_, mesh_.element_slots(),
+                 [&](std::size_t e) { std::ranges::replace(neighbours_[e], crowded, none); });
     classify();
     return std::move(mesh_);
   }
@@ -110,27 +112,6 @@ class SurfaceMeshMaker {
   void fill() {
     fill_mesh(executor_, any_, corners_, mesh_);
     parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) { mesh_.entity_of[v] = 0; });
-  }
-
-  void report_unused_vertices() {
-    const auto unused = runtime::parallel_reduce(
-        executor_, mesh_.vertex_slots(), std::size_t{0},
-        [&](std::size_t v) { return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))}; },
-        [](std::size_t a, std::size_t b) { return a + b; });
-    if (unused != 0)
-      warn(std::to_string(unused) + " of " + std::to_string(mesh_.vertex_slots()) +
-           " vertices belong to no triangle and are left out");
-  }
-
-  void find_neighbours() {
-    runtime::FreshMemory fresh;
-    neighbours_.resize_for_overwrite(mesh_.element_slots(), fresh);
-    fresh.touch(executor_);
-    meshadapt::find_neighbours<2>(
-        executor_, mesh_.corners_of, mesh_.vertex_slots(),
-        [this](VertexId v) { return mesh_.elements_of.of(v); }, neighbours_);
-    parallel_for(executor_, mesh_.element_slots(),
-                 [&](std::size_t e) { std::ranges::replace(neighbours_[e], crowded, none); });
   }
 
   // ---- Patches and curves ----
@@ -150,7 +131,7 @@ class SurfaceMeshMaker {
   /// Edges that are listed, that cannot be smooth, or that shall stay.
   std::vector<ListedEdge> listed_edges(MeshInMaking<3>& making) {
     std::vector<ListedEdge> edges = tag_edges(making);
-    const std::vector<SideKey> seams = edges_.seams();
+    const std::vector<SideKey> seams = seams_of(sides_, corners_);
     if (!seams.empty())
       warn("the surface has one side only: " + std::to_string(seams.size()) +
            " edges, where neighbours cannot be turned alike, are kept as curves");
@@ -164,7 +145,7 @@ class SurfaceMeshMaker {
     };
     for (const SideKey key : seams) keep(key, false);
     if (options_.lock_boundary)
-      edges_.each([&](std::span<const TriangleEdge> run) {
+      sides_.each_run([&](std::span<const FacetSide> run) {
         if (run.size() == 1) keep(run[0].key, true);
       });
     return edges;
@@ -218,7 +199,7 @@ class SurfaceMeshMaker {
   std::vector<std::string>& warnings_;
   Mesh<2, 3> mesh_;
   const std::vector<Corners<2>>& corners_;  // [element]
-  TriangleEdges edges_;
+  FacetSides<3> sides_;
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 /// on the boundary.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -38,10 +37,5 @@ std::vector<TaggedFacet<Dim>> tag_facets(MeshInMaking<Dim>& making);
 /// construction lines do, are left out. Precondition and thread safety as above.
 template <int Dim>
 std::vector<ListedEdge> tag_edges(MeshInMaking<Dim>& making);
-
-extern template std::vector<TaggedFacet<2>> tag_facets(MeshInMaking<2>&);
-extern template std::vector<TaggedFacet<3>> tag_facets(MeshInMaking<3>&);
-extern template std::vector<ListedEdge> tag_edges(MeshInMaking<2>&);
-extern template std::vector<ListedEdge> tag_edges(MeshInMaking<3>&);
 
 }  // namespace ductile::meshadapt

@@ -1,6 +1,5 @@
 #include "geometry/boundary_parts.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -31,7 +30,7 @@ void find_touching(BoundaryParts<Dim>& parts, double distance) {
     const auto v = static_cast<VertexId>(i);
     if (is_on_boundary[v] == 0) return;
     const Vector<Dim>& at = parts.mesh.site_of[v].position;
-    index.each_meeting(box_around(std::array{at}, distance), [&](std::size_t g) {
+    index.each_meeting(grown(box_around(std::array{at}), distance), [&](std::size_t g) {
       if (contains(facets[g], v) || norm(closest_point(points(g), at) - at) > distance) return;
       append(Contact{v, static_cast<std::uint32_t>(g)});
     });

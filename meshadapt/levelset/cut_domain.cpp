@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"

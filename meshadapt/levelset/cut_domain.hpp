@@ -56,11 +56,5 @@ CutDomain<Dim> make_cut_domain(const runtime::Executor& executor, const AnyMesh&
 
 extern template struct CutDomain<2>;
 extern template struct CutDomain<3>;
-extern template CutDomain<2> make_cut_domain<2, 2>(const runtime::Executor&, const AnyMesh&,
-                                                   const CutOptions&);
-extern template CutDomain<2> make_cut_domain<2, 3>(const runtime::Executor&, const AnyMesh&,
-                                                   const CutOptions&);
-extern template CutDomain<3> make_cut_domain<3, 3>(const runtime::Executor&, const AnyMesh&,
-                                                   const CutOptions&);
 
 }  // namespace ductile::meshadapt

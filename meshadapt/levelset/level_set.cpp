@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -14,6 +15,7 @@
 #include "levelset/cut_writer.hpp"
 #include "levelset/sides.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/scale.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -40,9 +42,7 @@ void expect_options(const CutOptions& options) {
 
 void expect_cut_values(const Executor& executor, const AnyMesh& mesh,
                        std::span<const double> values) {
-  if (values.size() != mesh.vertex_count())
-    throw InputError("values: expected one for each of the " + std::to_string(mesh.vertex_count()) +
-                     " vertices, found " + std::to_string(values.size()));
+  expect_at_each_vertex("values: expected one", mesh.vertex_count(), values.size());
   const std::size_t bad = first_bad(executor, values.size(), [&](std::size_t v) {
     return !(std::abs(values[v]) <= largest_value);
   });
@@ -130,12 +130,9 @@ class Cutter {
           if (!domain_.is_split(origin_of[e]) ||
               !std::ranges::any_of(corners_of[e], [&](VertexId v) { return made.value[v] < 0; }))
             return 0.0;
-          std::array<Vector<Space>, Dim + 1> points;
-          for (std::size_t i = 0; i <= Dim; ++i)
-            points[i] = position_in<Space>(made.mesh, corners_of[e][i]);
-          return volume_of_simplex<Dim, Space>(points);
+          return volume_of_simplex<Dim, Space>(points_in<Space>(made.mesh, corners_of[e]));
         },
-        [](double a, double b) { return a + b; });
+        std::plus<>());
   }
 
   std::string never_met(double level, std::size_t removed) const {
@@ -244,10 +241,7 @@ class Cutter {
     if constexpr (Space == Dim) {
       const auto& corners_of = elements_in<Dim>(made.mesh).vertices;
       return first_bad(executor_, corners_of.size(), [&](std::size_t e) {
-               std::array<Vector<Space>, Dim + 1> points;
-               for (std::size_t i = 0; i <= Dim; ++i)
-                 points[i] = position_in<Space>(made.mesh, corners_of[e][i]);
-               return orientation<Dim>(points) <= 0;
+               return orientation<Dim>(points_in<Dim>(made.mesh, corners_of[e])) <= 0;
              }) == no_index;
     }
     return true;

@@ -19,10 +19,7 @@ namespace {
 
 std::vector<double> minus(const Executor& executor, const AnyMesh& mesh,
                           std::span<const double> values, double level) {
-  if (values.size() != mesh.vertex_count())
-    throw InputError("level set: expected a value for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices, found " +
-                     std::to_string(values.size()));
+  expect_at_each_vertex("level set: expected a value", mesh.vertex_count(), values.size());
   std::vector<double> result(values.begin(), values.end());
   for (double& value : result) value -= level;
   const std::size_t bad =

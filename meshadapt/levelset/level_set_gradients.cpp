@@ -1,6 +1,5 @@
 #include "levelset/level_set_gradients.hpp"
 
-#include <algorithm>
 #include <array>
 #include <optional>
 

@@ -21,13 +21,4 @@ std::vector<Vector<Dim>> level_set_gradients(const runtime::Executor& executor,
                                              std::span<const double> value_of,
                                              std::span<const VertexId> at);
 
-extern template std::vector<Vector<2>> level_set_gradients(const runtime::Executor&,
-                                                           const FixedMesh<2>&,
-                                                           std::span<const double>,
-                                                           std::span<const VertexId>);
-extern template std::vector<Vector<3>> level_set_gradients(const runtime::Executor&,
-                                                           const FixedMesh<3>&,
-                                                           std::span<const double>,
-                                                           std::span<const VertexId>);
-
 }  // namespace ductile::meshadapt

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "ductile/meshadapt/hessian_metric.hpp"
-#include "ductile/runtime/parallel_for.hpp"
 #include "levelset/level_set_gradients.hpp"
 
 namespace ductile::meshadapt {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -52,7 +53,7 @@ double volume_below(const runtime::Executor& executor, const CutDomain<Dim>& dom
         return domain.is_split(static_cast<ElementId>(e)) ? volume_below(domain, e, value_of, level)
                                                           : 0.0;
       },
-      [](double a, double b) { return a + b; });
+      std::plus<>());
 }
 
 struct RemovedParts {

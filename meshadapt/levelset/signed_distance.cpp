@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"

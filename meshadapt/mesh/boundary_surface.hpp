@@ -4,7 +4,6 @@
 /// the joint is non-manifold.
 #pragma once
 
-#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>

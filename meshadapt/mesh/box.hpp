@@ -31,6 +31,15 @@ struct Box {
     return a;
   }
 
+  /// The box with a margin on all sides.
+  friend Box grown(Box box, double margin) {
+    for (int i = 0; i < Dim; ++i) {
+      box.low[i] -= margin;
+      box.high[i] += margin;
+    }
+    return box;
+  }
+
   /// Do they have a point in common?
   friend bool meet(const Box& a, const Box& b) {
     for (int i = 0; i < Dim; ++i)

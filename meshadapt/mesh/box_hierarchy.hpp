@@ -74,10 +74,6 @@ class BoxHierarchy {
     if (!order_.empty()) add_nodes(executor);
   }
 
-  /// The same on one thread.
-  BoxHierarchy(std::size_t n, const auto& box_of)
-      : BoxHierarchy(runtime::Executor({.threads = 1}), n, box_of) {}
-
   /// The things along a space-filling curve.
   const std::vector<std::uint32_t>& order() const { return order_; }
 

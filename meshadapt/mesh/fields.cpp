@@ -10,6 +10,15 @@ namespace ductile::meshadapt {
 
 namespace {
 
+/// The components [first, first + count) of each vertex.
+std::vector<double> components_of(const AnyField& field, std::size_t first, std::size_t count) {
+  const std::size_t stride = stride_of(field);
+  std::vector<double> values(field.vertex_count * count);
+  for (std::size_t v = 0; v < field.vertex_count; ++v)
+    std::copy_n(&field.values[v * stride + first], count, &values[v * count]);
+  return values;
+}
+
 /// The first component of a field within a vertex. Throws unless the field is of this type.
 std::size_t first_component(const AnyField& field, std::size_t index, AnyField::Type type) {
   if (index >= field.types.size() || field.types[index] != type)
@@ -66,17 +75,13 @@ AnyField joined(const AnyField& first, const AnyField& second) {
 std::vector<NamedField> named_fields(const AnyField& field, const std::string& name) {
   std::vector<NamedField> fields;
   expect_values(field);
-  const std::size_t stride = stride_of(field);
   std::size_t first = 0;
   for (const AnyField::Type type : field.types) {
     const auto count = static_cast<std::size_t>(component_count(type, field.dimension));
-    NamedField& part = fields.emplace_back();
-    part.name = field.types.size() == 1 ? name : name + "_" + std::to_string(fields.size());
-    part.type = type;
-    part.values.reserve(field.vertex_count * count);
-    for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex)
-      for (std::size_t i = 0; i < count; ++i)
-        part.values.push_back(field.values[vertex * stride + first + i]);
+    const std::string number = std::to_string(fields.size() + 1);
+    fields.push_back({.name = field.types.size() == 1 ? name : name + "_" + number,
+                      .type = type,
+                      .values = components_of(field, first, count)});
     first += count;
   }
   return fields;
@@ -84,11 +89,7 @@ std::vector<NamedField> named_fields(const AnyField& field, const std::string& n
 
 std::vector<double> scalars_of(const AnyField& field, std::size_t index) {
   expect_values(field);
-  const std::size_t first = first_component(field, index, AnyField::Type::scalar);
-  const std::size_t stride = stride_of(field);
-  std::vector<double> value_of(field.vertex_count);
-  for (std::size_t v = 0; v < value_of.size(); ++v) value_of[v] = field.values[v * stride + first];
-  return value_of;
+  return components_of(field, first_component(field, index, AnyField::Type::scalar), 1);
 }
 
 template <int Dim>
@@ -97,11 +98,11 @@ std::vector<Vector<Dim>> vectors_of(const AnyField& field, std::size_t index) {
     throw InputError(name_of(field) + ": expected dimension " + std::to_string(Dim) + ", found " +
                      std::to_string(field.dimension));
   expect_values(field);
-  const std::size_t first = first_component(field, index, AnyField::Type::vector);
-  const std::size_t stride = stride_of(field);
+  const auto values =
+      components_of(field, first_component(field, index, AnyField::Type::vector), Dim);
   std::vector<Vector<Dim>> vector_of(field.vertex_count);
   for (std::size_t v = 0; v < vector_of.size(); ++v)
-    std::copy_n(&field.values[v * stride + first], Dim, vector_of[v].x.begin());
+    std::copy_n(&values[v * Dim], Dim, vector_of[v].x.begin());
   return vector_of;
 }
 

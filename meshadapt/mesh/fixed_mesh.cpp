@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 
 #include "core/determinant.hpp"
 #include "core/first_bad.hpp"
-#include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/array_lengths.hpp"
@@ -148,14 +148,10 @@ std::array<Vector<Dim>, Dim + 1> hat_gradients(const std::array<Vector<Dim>, Dim
 template <int Dim>
 double integral(const Executor& executor, const FixedMesh<Dim>& mesh,
                 std::span<const double> value_of) {
-  if (value_of.size() != mesh.vertex_count())
-    throw InputError("value_of: expected a value for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices, found " +
-                     std::to_string(value_of.size()));
+  expect_at_each_vertex("value_of: expected a value", mesh.vertex_count(), value_of.size());
   return runtime::parallel_reduce(
       executor, mesh.vertex_count(), 0.0,
-      [&](std::size_t v) { return mesh.share_of[v] * value_of[v]; },
-      [](double a, double b) { return a + b; });
+      [&](std::size_t v) { return mesh.share_of[v] * value_of[v]; }, std::plus<>());
 }
 
 template FixedMesh<2> make_fixed_mesh(const Executor&, const AnyMesh&);

@@ -1,16 +1,15 @@
 /// @file
 /// join_vertices: vertices that lie together become one, in all arrays of a mesh.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-#include <string>
 #include <utility>
 
 #include "ductile/meshadapt/mesh_arrays.hpp"
+#include "ductile/runtime/disjoint_sets.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/box_hierarchy.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/sorted_cells.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -24,27 +23,18 @@ std::vector<std::uint32_t> first_of_each(const AnyMesh& mesh, double tolerance) 
     const auto at = position_in<Dim>(mesh, v);
     return Box<Dim>{at, at};
   };
-  const BoxHierarchy<Dim> index(mesh.vertex_count(), box_of);
-  std::vector<std::uint32_t> first(mesh.vertex_count());
-  std::iota(first.begin(), first.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (first[v] != v) v = first[v] = first[first[v]];
-    return v;
-  };
-  for (std::uint32_t v = 0; v < first.size(); ++v) {
-    Box<Dim> box = box_of(v);
-    const auto at = box.low;
-    for (int i = 0; i < Dim; ++i) {
-      box.low[i] -= tolerance;
-      box.high[i] += tolerance;
-    }
-    index.each_meeting(box, [&](std::size_t w) {
-      if (w >= v || norm(position_in<Dim>(mesh, w) - at) > tolerance) return;
-      const std::uint32_t a = root(v), b = root(static_cast<std::uint32_t>(w));
-      first[std::max(a, b)] = std::min(a, b);
+  const runtime::Executor executor({.threads = 1});
+  const BoxHierarchy<Dim> index(executor, mesh.vertex_count(), box_of);
+  runtime::DisjointSets sets(executor, mesh.vertex_count());
+  for (std::uint32_t v = 0; v < sets.size(); ++v) {
+    const auto at = position_in<Dim>(mesh, v);
+    index.each_meeting(grown(box_of(v), tolerance), [&](std::size_t w) {
+      if (w < v && norm(position_in<Dim>(mesh, w) - at) <= tolerance)
+        sets.unite(v, static_cast<std::uint32_t>(w));
     });
   }
-  for (std::uint32_t v = 0; v < first.size(); ++v) first[v] = root(v);
+  std::vector<std::uint32_t> first(mesh.vertex_count());
+  for (std::uint32_t v = 0; v < first.size(); ++v) first[v] = sets.lowest(v);
   return first;
 }
 
@@ -67,17 +57,12 @@ void rename_corners(const AnyMesh& mesh, Cells<Corners>& cells,
 /// Keeps the first of facets that have become the same; marked ones are marked in the end.
 template <int Corners>
 void keep_first(Cells<Corners>& cells, std::initializer_list<std::vector<std::uint32_t>*> marks) {
-  std::vector<std::array<std::uint32_t, Corners + 1>> keys(cells.size());  // and the cell itself
-  for (std::uint32_t c = 0; c < keys.size(); ++c) {
-    std::copy(cells.vertices[c].begin(), cells.vertices[c].end(), keys[c].begin());
-    std::sort(keys[c].begin(), keys[c].end() - 1);
-    keys[c].back() = c;
-  }
-  std::sort(keys.begin(), keys.end());
+  const auto sorted = sorted_cells(runtime::Executor({.threads = 1}), cells.vertices);
   std::vector<std::uint32_t> same_as(cells.size()), new_of(cells.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const bool again = i > 0 && std::equal(keys[i].begin(), keys[i].end() - 1, keys[i - 1].begin());
-    same_as[keys[i].back()] = again ? same_as[keys[i - 1].back()] : keys[i].back();
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const auto& [corners, cell] = sorted[i];
+    const bool again = i > 0 && corners == sorted[i - 1].first;
+    same_as[cell] = again ? same_as[sorted[i - 1].second] : cell;
   }
   Cells<Corners> kept;
   for (std::uint32_t c = 0; c < same_as.size(); ++c) {

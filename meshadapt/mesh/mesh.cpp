@@ -1,10 +1,5 @@
 #include "mesh/mesh.hpp"
 
-#include <algorithm>
-#include <array>
-#include <span>
-
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"

@@ -1,8 +1,6 @@
 #include "ductile/meshadapt/mesh_arrays.hpp"
 
-#include <algorithm>
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -14,12 +12,13 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/scale.hpp"
+#include "mesh/sorted_cells.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -83,15 +82,7 @@ void take_cells(const Executor& executor, const GivenCells<Index>& given, const 
 template <int Dim>
 runtime::UnsetVector<ElementFacet> unlisted_boundary(const Executor& executor,
                                                      const AnyMesh& mesh) {
-  const auto ascending = [](Facet<Dim> corners) {
-    std::sort(corners.begin(), corners.end());
-    return corners;
-  };
-  const auto& listed_facets = facets_in<Dim>(mesh).vertices;
-  std::vector<Facet<Dim>> listed(listed_facets.size());
-  runtime::parallel_for(executor, listed.size(),
-                        [&](std::size_t f) { listed[f] = ascending(listed_facets[f]); });
-  runtime::parallel_sort(executor, std::span(listed));
+  const auto listed = sorted_cells(executor, facets_in<Dim>(mesh).vertices);
   const auto& reference_of = elements_in<Dim>(mesh).reference;
   const std::vector<std::uint32_t> region_of(reference_of.begin(), reference_of.end());
   const AdjacentMesh adjacent(executor, mesh);
@@ -101,8 +92,7 @@ runtime::UnsetVector<ElementFacet> unlisted_boundary(const Executor& executor,
         for (ElementFacet at{static_cast<ElementId>(e), 0}; at.facet <= Dim; ++at.facet)
           if (adjacency.is_first(at) &&
               adjacency.on_region_boundary(at.element, at.facet, region_of) &&
-              !std::binary_search(listed.begin(), listed.end(),
-                                  ascending(facet_of<Dim>(adjacency.corners_of[e], at.facet))))
+              find_cell<Dim>(listed, facet_of<Dim>(adjacency.corners_of[e], at.facet)) == none)
             append(at);
       });
 }
@@ -111,10 +101,8 @@ runtime::UnsetVector<ElementFacet> unlisted_boundary(const Executor& executor,
 template <int Dim>
 Facet<Dim> outward(const AnyMesh& mesh, const ElementFacet& at) {
   const Corners<Dim>& corners = elements_in<Dim>(mesh).vertices[at.element];
-  std::array<Vector<Dim>, Dim + 1> points;
-  for (std::size_t i = 0; i <= Dim; ++i) points[i] = position_in<Dim>(mesh, corners[i]);
   Facet<Dim> result = facet_of<Dim>(corners, at.facet);
-  if (orientation<Dim>(points) < 0) std::swap(result[0], result[1]);
+  if (orientation<Dim>(points_in<Dim>(mesh, corners)) < 0) std::swap(result[0], result[1]);
   return result;
 }
 

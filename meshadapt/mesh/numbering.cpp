@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <utility>
 
+#include <boost/container/static_vector.hpp>
+
 #include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
@@ -32,22 +34,11 @@ class Prism {
       return std::hypot(across.front(), across.back());
     }
   };
-  /// The corners of a part of a simplex, convex up to rounding.
-  class Part {
-   public:
-    Part() : size_(0) {}
-    void push_back(const Place& place) { places_[size_++] = place; }
-    void clear() { size_ = 0; }
-    std::size_t size() const { return size_; }
-    bool empty() const { return size_ == 0; }
-    const Place& operator[](std::size_t i) const { return places_[i]; }
-    const Place* begin() const { return places_.data(); }
-    const Place* end() const { return places_.data() + size_; }
-
-   private:
-    std::array<Place, 3 * Corners> places_;  // each side adds at most half as many
-    std::size_t size_;
-  };
+  /// The corners of a part of a simplex, convex up to rounding. Each side of the prism adds at most
+  /// half as many.
+  using Part = boost::container::static_vector<
+      Place, 3 * Corners,
+      boost::container::static_vector_options_t<boost::container::throw_on_overflow<false>>>;
 
   /// For a degenerate simplex the prism is empty.
   explicit Prism(const Points& simplex) : corner_(simplex) {
@@ -163,7 +154,7 @@ class Prism {
 
   static void cut(const Part& part, std::size_t side, Part& result) {
     result.clear();
-    const Place* here = part.end() - 1;
+    const Place* here = &part.back();
     double a = weight(*here, side);
     for (const Place& next : part) {
       const double b = weight(next, side);

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <set>
 #include <span>
-#include <utility>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/worklist.hpp"
 #include "mesh/boundary_surface.hpp"
 
 namespace ductile::meshadapt {
@@ -27,66 +23,27 @@ std::vector<std::int32_t> references_of(const std::vector<std::int32_t>& referen
   return {found.begin(), found.end()};
 }
 
-/// Connected parts of elements by shared vertices of their region. A vertex represents itself in
-/// its region of lowest number; for its other regions, numbers are added.
+/// Counts the connected parts of elements by shared vertices of their region; none of a surface.
 template <int Dim>
-class Parts {
- public:
-  Parts(const Executor& executor, const AnyMesh& mesh, Regions region_of)
-      : elements_(elements_in<Dim>(mesh).vertices),
-        region_of_(region_of),
-        lowest_(runtime::make_filled<std::uint32_t>(executor, mesh.vertex_count(), none)),
-        sets_(executor, 0) {
-    runtime::parallel_for(executor, elements_.size(), [&](std::size_t e) {
-      for (const VertexId v : elements_[e]) runtime::atomic_min(lowest_[v], region(e));
-    });
-    if (!region_of.empty()) find_others(executor);
-    sets_ = runtime::DisjointSets(executor, lowest_.size() + others_.size());
-    runtime::parallel_for(executor, elements_.size(), [&](std::size_t e) {
-      const std::uint32_t first = number_of(elements_[e][0], e);
-      for (std::size_t i = 1; i <= Dim; ++i) sets_.unite(first, number_of(elements_[e][i], e));
-    });
-  }
-
-  void count(std::vector<RegionTopology>& regions) {
-    for (std::uint32_t v = 0; v < lowest_.size(); ++v)
-      if (lowest_[v] != none && sets_.lowest(v) == v) ++regions[lowest_[v]].parts;
-    for (std::size_t i = 0; i < others_.size(); ++i) {
-      const auto number = static_cast<std::uint32_t>(lowest_.size() + i);
-      if (sets_.lowest(number) == number) ++regions[static_cast<std::uint32_t>(others_[i])].parts;
+void count_parts(const AdjacentMesh& mesh, Regions region_of,
+                 std::vector<RegionTopology>& regions) {
+  const auto count = static_cast<ElementId>(elements_in<Dim>(mesh.mesh()).size());
+  if (count == 0) return;
+  const VertexElements& lists = mesh.lists<Dim>();
+  const auto region = [&](ElementId e) { return region_of.empty() ? 0 : region_of[e]; };
+  runtime::DisjointSets parts(mesh.executor(), count);
+  runtime::parallel_for(mesh.executor(), mesh.mesh().vertex_count(), [&](std::size_t v) {
+    std::vector<ElementId> first_of_each;  // region around the vertex
+    for (const ElementId e : lists.elements_of(static_cast<VertexId>(v))) {
+      const auto first = std::ranges::find(first_of_each, region(e), region);
+      if (first == first_of_each.end())
+        first_of_each.push_back(e);
+      else
+        parts.unite(*first, e);
     }
-  }
-
- private:
-  using Other = std::uint64_t;  // a vertex, in the upper half, and a region
-
-  std::uint32_t region(std::size_t e) const { return region_of_.empty() ? 0 : region_of_[e]; }
-
-  void find_others(const Executor& executor) {
-    auto all = runtime::parallel_collect<Other>(executor, elements_.size(),
-                                                [&](std::size_t e, auto&& append) {
-                                                  for (const VertexId v : elements_[e])
-                                                    if (lowest_[v] != region(e))
-                                                      append(Other{v} << 32U | region(e));
-                                                });
-    runtime::parallel_sort(executor, std::span(all));
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    others_ = std::move(all);
-  }
-
-  std::uint32_t number_of(VertexId v, std::size_t e) const {
-    if (lowest_[v] == region(e)) return v;
-    const auto at = std::lower_bound(others_.begin(), others_.end(), Other{v} << 32U | region(e));
-    return static_cast<std::uint32_t>(lowest_.size() +
-                                      static_cast<std::size_t>(at - others_.begin()));
-  }
-
-  const std::vector<Corners<Dim>>& elements_;
-  Regions region_of_;
-  runtime::UnsetVector<std::uint32_t> lowest_;  // [vertex], region; none: no element
-  runtime::UnsetVector<Other> others_;          // sorted
-  runtime::DisjointSets sets_;
-};
+  });
+  for (ElementId e = 0; e < count; ++e) regions[region(e)].parts += parts.lowest(e) == e;
+}
 
 template <int Dim>
 void count_boundary(BoundarySurface<Dim> surface, std::vector<RegionTopology>& regions) {
@@ -114,7 +71,7 @@ void count_boundary(BoundarySurface<Dim> surface, std::vector<RegionTopology>& r
 template <int Dim>
 void count(const AdjacentMesh& mesh, Regions region_of, std::vector<RegionTopology>& regions) {
   const Executor& executor = mesh.executor();
-  Parts<Dim>(executor, mesh.mesh(), region_of).count(regions);
+  count_parts<Dim>(mesh, region_of, regions);
   count_boundary<Dim>({executor, sides_in<Dim>(mesh, region_of)}, regions);
 }
 

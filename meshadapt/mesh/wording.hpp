@@ -58,6 +58,15 @@ const char* facets_array() {
   return Dim == 2 ? "edges.vertices" : "triangles.vertices";
 }
 
+/// Throws InputError unless as many entries were found as there are vertices; `expected` says
+/// which, as in "value_of: expected a value".
+inline void expect_at_each_vertex(const std::string& expected, std::size_t vertices,
+                                  std::size_t found) {
+  if (found != vertices)
+    throw InputError(expected + " for each of the " + std::to_string(vertices) +
+                     " vertices, found " + std::to_string(found));
+}
+
 [[noreturn]] inline void refuse(const Wording& message) {
   throw InputError(message.in_memory, message.in_file);
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "ductile/meshadapt/metric.hpp"
@@ -36,6 +35,17 @@ Metric<Dim> within_bounds(const Metric<Dim>& tensor, const SizeBounds& bounds) {
   }
   axes.value = bounded(axes.value, bounds);
   return compose(axes);
+}
+
+/// The metric with its sizes within bounds; itself if they hold.
+template <int Dim>
+Metric<Dim> with_bounded_sizes(Metric<Dim> metric, const SizeBounds& bounds) {
+  if (!in_range(metric)) metric = within_bounds(metric, bounds);
+  PrincipalAxes<Dim> axes = principal_axes(metric);
+  const auto within = bounded(axes.value, bounds);
+  if (within == axes.value) return metric;
+  axes.value = within;
+  return brought_into_range(compose(axes));
 }
 
 }  // namespace ductile::meshadapt

@@ -1,12 +1,10 @@
 #include "metric/charts.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/unit.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -72,22 +70,12 @@ Fans fans_around(const Triangles& surface, VertexId vertex) {
 
 /// The normal is the mean by area; triangles may be turned to either side.
 std::array<Vector<3>, 3> frame_at(const Triangles& nodes, VertexId node) {
-  Vector<3> largest, sum;
-  for (const ElementId e : nodes.elements_of(node)) {
-    const Vector<3> normal = facet_normal(nodes.points(e));
-    if (dot(normal, normal) > dot(largest, largest)) largest = normal;
-  }
-  for (const ElementId e : nodes.elements_of(node)) {
-    const Vector<3> normal = facet_normal(nodes.points(e));
-    sum += std::copysign(1.0, dot(normal, largest)) * normal;
-  }
-  const Vector<3> normal = norm(sum) > 0 ? unit(sum) : Vector<3>{{0, 0, 1}};
-  int least = 0;
-  for (int i = 1; i < 3; ++i)
-    if (std::abs(normal[i]) < std::abs(normal[least])) least = i;
-  Vector<3> axis;
-  axis[least] = 1;
-  const Vector<3> along = unit(axis - normal[least] * normal);
+  const auto around = nodes.elements_of(node);
+  const Vector<3> mean = mean_direction(
+      around.size(), [&](std::size_t i) { return facet_normal(nodes.points(around[i])); });
+  const Vector<3> normal = norm(mean) > 0 ? mean : Vector<3>{{0, 0, 1}};
+  const Vector<3> axis = axis_across(normal);
+  const Vector<3> along = unit(axis - dot(axis, normal) * normal);
   return {along, cross(normal, along), normal};
 }
 

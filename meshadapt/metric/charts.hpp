@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -80,12 +79,5 @@ template <int Dim, int Space>
 std::vector<Metric<Dim>> fitted_hessian(const runtime::Executor& executor,
                                         const Charts<Dim, Space>& charts,
                                         std::span<const double> value_of);
-
-extern template std::vector<Metric<2>> fitted_hessian(const runtime::Executor&, const Charts<2>&,
-                                                      std::span<const double>);
-extern template std::vector<Metric<2>> fitted_hessian(const runtime::Executor&, const Charts<2, 3>&,
-                                                      std::span<const double>);
-extern template std::vector<Metric<3>> fitted_hessian(const runtime::Executor&, const Charts<3>&,
-                                                      std::span<const double>);
 
 }  // namespace ductile::meshadapt

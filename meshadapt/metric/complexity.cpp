@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "core/first_bad.hpp"
@@ -175,7 +176,7 @@ double complexity(const Executor& executor, const FixedMesh<Dim, Space>& mesh,
     }
     return sum;
   };
-  const auto add = [](double a, double b) { return a + b; };
+  const auto add = std::plus<>();
   return Dim < Space ? runtime::parallel_reduce(executor, mesh.element_count(), 0.0, in_plane, add)
                      : runtime::parallel_reduce(executor, metric_of.size(), 0.0, of_vertex, add);
 }

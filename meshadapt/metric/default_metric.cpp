@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "core/determinant.hpp"
@@ -15,8 +14,8 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/scale.hpp"
 #include "mesh/wording.hpp"
-#include "metric/little_stretch.hpp"
 #include "metric/metric_of_element.hpp"
 
 namespace ductile::meshadapt {
@@ -24,67 +23,13 @@ namespace ductile::meshadapt {
 namespace {
 
 AnyField isotropic_field(const AnyMesh& mesh, const std::vector<double>& size_of) {
-  AnyField field;
-  field.dimension = mesh.dimension;
-  field.vertex_count = mesh.vertex_count();
-  field.types = {AnyField::Type::symmetric};
-  field.name = mesh.name;
-  const auto stride =
-      static_cast<std::size_t>(component_count(AnyField::Type::symmetric, mesh.dimension));
+  AnyField field{mesh.dimension, mesh.vertex_count(), {AnyField::Type::symmetric}, {}, mesh.name};
+  const std::size_t stride = stride_of(field);
   field.values.assign(stride * field.vertex_count, 0.0);
   for (std::size_t v = 0; v < field.vertex_count; ++v)
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(mesh.dimension); ++axis)
       field.values[v * stride + axis * (axis + 3) / 2] = 1 / (size_of[v] * size_of[v]);
   return field;
-}
-
-double distance(const AnyMesh& mesh, std::size_t a, std::size_t b) {
-  const auto dimension = static_cast<std::size_t>(mesh.dimension);
-  double squares = 0;
-  for (std::size_t axis = 0; axis < dimension; ++axis) {
-    const double d =
-        mesh.coordinates[a * dimension + axis] - mesh.coordinates[b * dimension + axis];
-    squares += d * d;
-  }
-  return std::sqrt(squares);
-}
-
-/// The diagonal of the box around the vertices; 1 if they are all in one place.
-double extent(const AnyMesh& mesh) {
-  const auto dimension = static_cast<std::size_t>(mesh.dimension);
-  std::array<double, 3> low{}, high{};
-  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) {
-    const std::size_t axis = i % dimension;
-    low[axis] = i < dimension ? mesh.coordinates[i] : std::min(low[axis], mesh.coordinates[i]);
-    high[axis] = i < dimension ? mesh.coordinates[i] : std::max(high[axis], mesh.coordinates[i]);
-  }
-  const double diagonal = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-  return diagonal > 0 ? std::clamp(diagonal, smallest_size, meshadapt::largest_size) : 1;
-}
-
-/// The logarithms of the edge lengths at each vertex, added up over the elements around it.
-struct LogLengths {
-  explicit LogLengths(std::size_t vertices) : sum(vertices), count(vertices) {}
-  std::vector<double> sum;
-  std::vector<std::uint32_t> count;
-};
-
-template <int Dim>
-void add_elements(LogLengths& logs, const AnyMesh& mesh) {
-  for (std::size_t e = 0; e < elements_in<Dim>(mesh).size(); ++e) {
-    if (names_others<Dim>(mesh, e)) refuse_corners<Dim>(mesh, e);
-    const auto& corner = elements_in<Dim>(mesh).vertices[e];
-    for (std::size_t i = 0; i < corner.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const double length = distance(mesh, corner[i], corner[j]);
-        if (!(length > 0)) continue;
-        for (const std::uint32_t v : {corner[i], corner[j]}) {
-          logs.sum[v] += std::log(length);
-          ++logs.count[v];
-        }
-      }
-    }
-  }
 }
 
 void expect_sizes(const AnyMesh& mesh, const std::vector<double>& size_of) {
@@ -97,20 +42,35 @@ void expect_sizes(const AnyMesh& mesh, const std::vector<double>& size_of) {
          " at vertex " + index_word(vertex) + "; scale the mesh");
 }
 
-/// The size that the mesh has at each vertex, alike in all directions.
-std::vector<double> sizes_of(const AnyMesh& mesh) {
+/// The size that the mesh has at each vertex, alike in all directions: the mean, of logarithms, of
+/// the lengths of its edges, counted per element.
+template <int Dim, int Space = Dim>
+std::vector<double> sizes_in(const AnyMesh& mesh) {
   expect_coordinates(mesh);
-  LogLengths logs(mesh.vertex_count());
-  element_dimension(mesh) == 2 ? add_elements<2>(logs, mesh) : add_elements<3>(logs, mesh);
-  double sum = 0, count = 0;
-  for (std::size_t v = 0; v < logs.sum.size(); ++v) {
-    sum += logs.sum[v];
-    count += logs.count[v];
+  std::vector<double> log_of(mesh.vertex_count());
+  std::vector<std::uint32_t> count_of(mesh.vertex_count());
+  for (std::size_t e = 0; e < elements_in<Dim>(mesh).size(); ++e) {
+    if (names_others<Dim>(mesh, e)) refuse_corners<Dim>(mesh, e);
+    const Corners<Dim>& corner = elements_in<Dim>(mesh).vertices[e];
+    for (std::size_t i = 0; i < corner.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const double length =
+            norm(position_in<Space>(mesh, corner[i]) - position_in<Space>(mesh, corner[j]));
+        if (!(length > 0)) continue;
+        for (const VertexId v : {corner[i], corner[j]}) {
+          log_of[v] += std::log(length);
+          ++count_of[v];
+        }
+      }
   }
-  const double overall = count > 0 ? std::exp(sum / count) : 1;
-  std::vector<double> size_of(mesh.vertex_count(), overall);
+  double sum = 0, count = 0;
+  for (std::size_t v = 0; v < log_of.size(); ++v) {
+    sum += log_of[v];
+    count += count_of[v];
+  }
+  std::vector<double> size_of(log_of.size(), count > 0 ? std::exp(sum / count) : 1);
   for (std::size_t v = 0; v < size_of.size(); ++v)
-    if (logs.count[v] > 0) size_of[v] = std::exp(logs.sum[v] / logs.count[v]);
+    if (count_of[v] > 0) size_of[v] = std::exp(log_of[v] / count_of[v]);
   expect_sizes(mesh, size_of);
   return size_of;
 }
@@ -120,13 +80,13 @@ class DefaultMetric {
  public:
   DefaultMetric(const runtime::Executor& executor, const AnyMesh& mesh)
       : executor_(executor),
-        size_of_(sizes_of(mesh)),  // which checks the mesh, too
+        size_of_(sizes_in<Dim, Space>(mesh)),  // which checks the mesh, too
         mesh_(mesh),
         lists_(list_elements<Dim>(executor, elements_in<Dim>(mesh).vertices, mesh.vertex_count())),
         log_of_(elements_in<Dim>(mesh).size()),
         volume_of_(log_of_.size()) {
     runtime::parallel_for(executor_, log_of_.size(), [&](std::size_t e) {
-      const auto corner = points(e);
+      const auto corner = points_in<Space>(mesh, elements_in<Dim>(mesh).vertices[e]);
       volume_of_[e] = measure_of(corner);
       if (volume_of_[e] > 0) log_of_[e] = logarithm(metric_of_element<Dim>(corner));
     });
@@ -147,13 +107,6 @@ class DefaultMetric {
       return norm(facet_normal(corner));
     else
       return std::abs(plain_determinant(corner));
-  }
-
-  std::array<Vector<Space>, Dim + 1> points(std::size_t element) const {
-    std::array<Vector<Space>, Dim + 1> corner;
-    for (std::size_t i = 0; i <= Dim; ++i)
-      corner[i] = position_in<Space>(mesh_, elements_in<Dim>(mesh_).vertices[element][i]);
-    return corner;
   }
 
   Metric<Space> metric_at(VertexId v) const {
@@ -219,7 +172,10 @@ AnyField constant_metric(const AnyMesh& mesh, double size) {
 
 AnyField coarsest_metric(const AnyMesh& mesh, double largest_size) {
   expect_coordinates(mesh);
-  return constant_metric(mesh, largest_size != 0 ? largest_size : extent(mesh));
+  const double diagonal = diagonal_of(mesh);
+  const double size =
+      diagonal > 0 ? std::clamp(diagonal, smallest_size, meshadapt::largest_size) : 1;
+  return constant_metric(mesh, largest_size != 0 ? largest_size : size);
 }
 
 AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh) {
@@ -228,7 +184,10 @@ AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh) 
                              : DefaultMetric<3>(executor, mesh).field();
 }
 
-AnyField implied_metric(const AnyMesh& mesh) { return isotropic_field(mesh, sizes_of(mesh)); }
+AnyField implied_metric(const AnyMesh& mesh) {
+  if (is_surface(mesh)) return isotropic_field(mesh, sizes_in<2, 3>(mesh));
+  return isotropic_field(mesh, mesh.dimension == 2 ? sizes_in<2>(mesh) : sizes_in<3>(mesh));
+}
 
 AnyField implied_tensors(const runtime::Executor& executor, const AnyMesh& mesh) {
   if (is_surface(mesh)) return implied_tensors_in<2, 3>(executor, mesh);

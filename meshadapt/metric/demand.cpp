@@ -1,13 +1,10 @@
 #include "metric/demand.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <string>
 
-#include "core/first_bad.hpp"
 #include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"

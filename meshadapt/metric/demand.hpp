@@ -37,20 +37,4 @@ void expect_countable(const std::string& name, int dimension, double elements);
 /// is 0.8 of their number, and 0.85 of their memory, that are too many.
 void expect_room(const std::string& name, int dimension, double elements, std::size_t limit);
 
-extern template double complexity_of_demand(const runtime::Executor&, const Mesh<2>&,
-                                            const std::vector<Metric<2>>&);
-extern template double complexity_of_demand(const runtime::Executor&, const Mesh<2, 3>&,
-                                            const std::vector<Metric<3>>&);
-extern template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
-                                            const std::vector<Metric<3>>&);
-extern template double least_elements(const runtime::Executor&, const Mesh<2>&,
-                                      const std::vector<Metric<2>>&);
-extern template double least_elements(const runtime::Executor&, const Mesh<2, 3>&,
-                                      const std::vector<Metric<3>>&);
-extern template double least_elements(const runtime::Executor&, const Mesh<3>&,
-                                      const std::vector<Metric<3>>&);
-extern template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
-extern template double share_of_steep(const runtime::Executor&, const Mesh<2, 3>&);
-extern template double share_of_steep(const runtime::Executor&, const Mesh<3>&);
-
 }  // namespace ductile::meshadapt

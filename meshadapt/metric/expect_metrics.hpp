@@ -55,9 +55,7 @@ template <int Dim>
 void expect_metric_everywhere(const runtime::Executor& executor,
                               const std::vector<Metric<Dim>>& metric_of, std::size_t vertices,
                               const std::string& array) {
-  if (metric_of.size() != vertices)
-    throw InputError(array + ": expected a metric for each of the " + std::to_string(vertices) +
-                     " vertices, found " + std::to_string(metric_of.size()));
+  expect_at_each_vertex(array + ": expected a metric", vertices, metric_of.size());
   expect_metrics(executor, metric_of, array);
 }
 

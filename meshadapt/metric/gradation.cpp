@@ -172,9 +172,7 @@ void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationO
   if (!(options.tolerance >= 0) || options.sweeps < 0)
     throw InputError("gradation: expected a tolerance and sweeps of 0 or more, found " +
                      number(options.tolerance) + " and " + std::to_string(options.sweeps));
-  if (metrics != vertices)
-    throw InputError("metric_of: expected a metric for each of the " + std::to_string(vertices) +
-                     " vertices, found " + std::to_string(metrics));
+  expect_at_each_vertex("metric_of: expected a metric", vertices, metrics);
 }
 
 }  // namespace

@@ -4,12 +4,11 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
-#include <string>
 
 #include "core/small_system.hpp"
-#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/wording.hpp"
 #include "metric/charts.hpp"
 #include "metric/surroundings.hpp"
 
@@ -250,14 +249,6 @@ std::vector<Metric<Dim>> projected_hessian(const Executor& executor, const Fixed
 }
 
 template <int Dim>
-void expect_value_everywhere(const FixedMesh<Dim>& mesh, std::span<const double> value_of) {
-  if (value_of.size() != mesh.vertex_count())
-    throw InputError("value_of: expected a value for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices, found " +
-                     std::to_string(value_of.size()));
-}
-
-template <int Dim>
 AnyField hessians_of(const Executor& executor, const AnyMesh& any, const AnyField& field,
                      Recovery recovery) {
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
@@ -288,7 +279,7 @@ AnyField hessians_of(const Executor& executor, const AnyMesh& any, const AnyFiel
 template <int Dim>
 std::vector<Vector<Dim>> recover_gradient(const Executor& executor, const FixedMesh<Dim>& mesh,
                                           std::span<const double> value_of, Recovery recovery) {
-  expect_value_everywhere(mesh, value_of);
+  expect_at_each_vertex("value_of: expected a value", mesh.vertex_count(), value_of.size());
   if (recovery == Recovery::double_projection) return projected_gradient(executor, mesh, value_of);
   std::vector<VertexId> all(mesh.vertex_count());
   std::iota(all.begin(), all.end(), VertexId{0});
@@ -299,7 +290,7 @@ template <int Dim>
 std::vector<Vector<Dim>> recover_gradient_at(const Executor& executor, const FixedMesh<Dim>& mesh,
                                              std::span<const double> value_of,
                                              std::span<const VertexId> at) {
-  expect_value_everywhere(mesh, value_of);
+  expect_at_each_vertex("value_of: expected a value", mesh.vertex_count(), value_of.size());
   const Charts<Dim> charts(executor, mesh);
   QuadraticFit<Dim> fit(executor, charts, value_of);
   std::vector<Vector<Dim>> gradient_of(at.size());
@@ -311,7 +302,7 @@ std::vector<Vector<Dim>> recover_gradient_at(const Executor& executor, const Fix
 template <int Dim>
 std::vector<Metric<Dim>> recover_hessian(const Executor& executor, const FixedMesh<Dim>& mesh,
                                          std::span<const double> value_of, Recovery recovery) {
-  expect_value_everywhere(mesh, value_of);
+  expect_at_each_vertex("value_of: expected a value", mesh.vertex_count(), value_of.size());
   if (recovery == Recovery::double_projection) return projected_hessian(executor, mesh, value_of);
   return fitted_hessian(executor, Charts<Dim>(executor, mesh), value_of);
 }

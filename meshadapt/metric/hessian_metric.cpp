@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <string>
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "mesh/box.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/wording.hpp"
 #include "metric/charts.hpp"
@@ -46,16 +47,13 @@ void expect_options(const HessianMetricOptions& options) {
 /// Length of the diagonal of the box around the mesh.
 template <int Dim, int Space>
 double extent(const Executor& executor, const FixedMesh<Dim, Space>& mesh) {
-  Vector<Space> diagonal;
-  for (int axis = 0; axis < Space; ++axis) {
-    const auto furthest = [&](double sign) {
-      return parallel_reduce(
-          executor, mesh.vertex_count(), -std::numeric_limits<double>::infinity(),
-          [&](std::size_t v) { return sign * mesh.position_of[v][axis]; }, largest_of);
-    };
-    diagonal[axis] = furthest(1) + furthest(-1);
-  }
-  return norm(diagonal);
+  const Box<Space> box = parallel_reduce(
+      executor, mesh.vertex_count(), Box<Space>::empty(),
+      [&](std::size_t v) {
+        return Box<Space>{mesh.position_of[v], mesh.position_of[v]};
+      },
+      [](const Box<Space>& a, const Box<Space>& b) { return join(a, b); });
+  return norm(box.high - box.low);
 }
 
 /// The bounds that hold, those included that are not given.
@@ -77,7 +75,7 @@ double norm_of(const Executor& executor, const std::vector<double>& share_of,
   const double sum = parallel_reduce(
       executor, value_of.size(), 0.0,
       [&](std::size_t v) { return share_of[v] * std::pow(value_of[v] / most, norm); },
-      [](double a, double b) { return a + b; });
+      std::plus<>());
   return most * std::pow(sum, 1 / norm);
 }
 
@@ -114,10 +112,7 @@ class HessianMetric {
 
  private:
   void take_curvatures(const std::vector<Metric<Dim>>& hessian_of) {
-    if (hessian_of.size() != mesh_.vertex_count())
-      throw InputError("hessian_of: expected a tensor for each of the " +
-                       std::to_string(mesh_.vertex_count()) + " vertices, found " +
-                       std::to_string(hessian_of.size()));
+    expect_at_each_vertex("hessian_of: expected a tensor", mesh_.vertex_count(), hessian_of.size());
     const std::size_t bad = first_bad(executor_, hessian_of.size(), [&](std::size_t v) {
       const auto& m = hessian_of[v].m;
       return !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });

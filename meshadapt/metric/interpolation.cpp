@@ -4,7 +4,6 @@
 #include <span>
 
 #include "core/determinant.hpp"
-#include "core/orientation.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -100,11 +100,4 @@ Metric<Space> interpolated(const CornerLogs<Dim, Space>& logs,
   return exponential(log_mean);
 }
 
-extern template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2>&);
-extern template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2, 3>&);
-extern template bool is_steep<3>(const LogDensities<3>&, const CornerPlaces<3>&);
-extern template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2>&);
-extern template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2, 3>&);
-extern template double complexity_of_element<3>(const LogDensities<3>&, const CornerPlaces<3>&);
-
 }  // namespace ductile::meshadapt

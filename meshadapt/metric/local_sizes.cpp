@@ -9,7 +9,6 @@
 #include "mesh/array_lengths.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/entities_of.hpp"
-#include "metric/metric_range.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -50,13 +49,7 @@ AnyField bound(const Executor& executor, const AnyField& metric,
                const std::vector<SizeBounds>& bounds) {
   std::vector<Metric<Dim>> metric_of = tensors_of<Dim>(executor, metric);
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    if (!has_bounds(bounds[v])) return;
-    if (!in_range(metric_of[v])) metric_of[v] = within_bounds(metric_of[v], bounds[v]);
-    PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
-    const auto within = bounded(axes.value, bounds[v]);
-    if (within == axes.value) return;
-    axes.value = within;
-    metric_of[v] = brought_into_range(compose(axes));
+    if (has_bounds(bounds[v])) metric_of[v] = with_bounded_sizes(metric_of[v], bounds[v]);
   });
   return symmetric_field(executor, metric_of, metric.name);
 }

@@ -16,11 +16,4 @@ GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Space>>& metric_of, const Mesh<Dim, Space>& mesh,
                                 const GradationOptions& options = {});
 
-extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
-                                                const Mesh<2>&, const GradationOptions&);
-extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
-                                                const Mesh<2, 3>&, const GradationOptions&);
-extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
-                                                const Mesh<3>&, const GradationOptions&);
-
 }  // namespace ductile::meshadapt

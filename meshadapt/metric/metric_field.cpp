@@ -28,6 +28,21 @@ using Type = AnyField::Type;
        "correct the field there");
 }
 
+/// Throws unless the field has values for the mesh; `fits`: its dimension does.
+void expect_values_of(const AnyField& field, const AnyMesh& mesh, bool fits) {
+  if (field.vertex_count != mesh.vertex_count())
+    fail(field,
+         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + name_of(mesh) +
+             ", found " + std::to_string(field.vertex_count),
+         "give a field of this mesh");
+  if (!fits)
+    fail(field,
+         "dimension " + std::to_string(mesh.dimension) + ", that of " + name_of(mesh) + ", found " +
+             std::to_string(field.dimension),
+         "give a field of this mesh");
+  expect_values(field);
+}
+
 void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
   expect_coordinates(mesh);
   if (field.types.size() != 1)
@@ -39,17 +54,7 @@ void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
          "found type " +
              std::to_string(static_cast<int>(field.types[0])),
          "give another field");
-  if (field.vertex_count != mesh.vertex_count())
-    fail(field,
-         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + name_of(mesh) +
-             ", found " + std::to_string(field.vertex_count),
-         "give the field of this mesh");
-  if (field.dimension < mesh.dimension)
-    fail(field,
-         "dimension " + std::to_string(mesh.dimension) + ", that of " + name_of(mesh) + ", found " +
-             std::to_string(field.dimension),
-         "give the field of this mesh");
-  expect_values(field);
+  expect_values_of(field, mesh, field.dimension >= mesh.dimension);
 }
 
 /// An order of components that others write, and where ours are in it.
@@ -244,17 +249,7 @@ AnyField metric_of(const AnyField& field, const AnyMesh& mesh, const SizeBounds&
 }
 
 void expect_field_of(const AnyField& field, const AnyMesh& mesh) {
-  if (field.dimension != mesh.dimension)
-    fail(field,
-         "dimension " + std::to_string(mesh.dimension) + ", that of " + name_of(mesh) + ", found " +
-             std::to_string(field.dimension),
-         "give a field of this mesh");
-  if (field.vertex_count != mesh.vertex_count())
-    fail(field,
-         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + name_of(mesh) +
-             ", found " + std::to_string(field.vertex_count),
-         "give a field of this mesh");
-  expect_values(field);
+  expect_values_of(field, mesh, field.dimension == mesh.dimension);
 }
 
 template <int Dim>

@@ -1,6 +1,5 @@
 #include "ductile/meshadapt/metric_operations.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -69,12 +68,7 @@ void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
   expect_metrics(executor, metric_of, "metric_of", bounds);
   if (!has_bounds(bounds)) return;
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    if (!in_range(metric_of[v])) metric_of[v] = within_bounds(metric_of[v], bounds);
-    PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
-    const auto within = bounded(axes.value, bounds);
-    if (within == axes.value) return;
-    axes.value = within;
-    metric_of[v] = brought_into_range(compose(axes));
+    metric_of[v] = with_bounded_sizes(metric_of[v], bounds);
   });
 }
 

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt::raising {
 

@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "mesh/mesh.hpp"
-#include "metric/little_stretch.hpp"
+#include "metric/metric_of_element.hpp"
 #include "metric/metric_range.hpp"
 
 namespace ductile::meshadapt {

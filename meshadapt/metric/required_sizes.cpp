@@ -1,7 +1,6 @@
 #include "metric/required_sizes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -156,13 +155,11 @@ class Spreading {
 template <int Dim, int Space>
 std::vector<Source<Space>> sources_in(const Executor& executor, const Mesh<Dim, Space>& mesh,
                                       const std::vector<Metric<Space>>& metric_of) {
-  runtime::PerThread<std::optional<RequiredAround<Dim, Space>>> around(executor);
   const auto found = runtime::parallel_collect<Source<Space>>(
       executor, mesh.vertex_slots(), [&](std::size_t i, auto&& append) {
         const auto v = static_cast<VertexId>(i);
-        std::optional<RequiredAround<Dim, Space>>& mine = around.mine();
-        if (!mine) mine.emplace(mesh);
-        if (const auto metric = metric_of_required(mesh, *mine, v, metric_of[v]))
+        RequiredAround<Dim, Space> around(mesh);
+        if (const auto metric = metric_of_required(mesh, around, v, metric_of[v]))
           append(Source<Space>{v, *metric});
       });
   return {found.begin(), found.end()};

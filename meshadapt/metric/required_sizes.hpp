@@ -35,11 +35,4 @@ template <int Dim, int Space>
 GradationReport take_required_sizes(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
                                     double factor, std::vector<Metric<Space>>& metric_of);
 
-extern template GradationReport take_required_sizes(const runtime::Executor&, const Mesh<2>&,
-                                                    double, std::vector<Metric<2>>&);
-extern template GradationReport take_required_sizes(const runtime::Executor&, const Mesh<2, 3>&,
-                                                    double, std::vector<Metric<3>>&);
-extern template GradationReport take_required_sizes(const runtime::Executor&, const Mesh<3>&,
-                                                    double, std::vector<Metric<3>>&);
-
 }  // namespace ductile::meshadapt

@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/sizes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -9,13 +10,16 @@
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/boundary_surface.hpp"
+#include "mesh/box_hierarchy.hpp"
+#include "mesh/distance.hpp"
+#include "mesh/indices.hpp"
+#include "mesh/scale.hpp"
 #include "mesh/wording.hpp"
-#include "metric/distance_tree.hpp"
 #include "metric/entities_of.hpp"
 #include "metric/spectrum.hpp"
 
@@ -101,58 +105,54 @@ void expect_source(const SizeSource& source) {
   std::visit([](const auto& place) { expect_place(place); }, source.place);
 }
 
-// ---- Pieces that distances are measured to ----
+// ---- Triangles that distances are measured to; of segments and points corners are the same ----
 
-Piece point_piece(const Vector<3>& a) { return {{a, a, a}, 1}; }
-Piece segment_piece(const Vector<3>& a, const Vector<3>& b) { return {{a, b, a}, 2}; }
+using Triangle = std::array<Vector<3>, 3>;
 
-std::vector<Piece> pieces_of(const Polyline& line) {
-  std::vector<Piece> pieces;
-  if (line.points.size() == 1) pieces.push_back(point_piece(line.points[0]));
-  for (std::size_t i = 1; i < line.points.size(); ++i)
-    pieces.push_back(segment_piece(line.points[i - 1], line.points[i]));
-  return pieces;
+std::vector<Triangle> triangles_of(const Polyline& line) {
+  const auto& points = line.points;
+  std::vector<Triangle> triangles;
+  if (points.size() == 1) triangles.push_back({points[0], points[0], points[0]});
+  for (std::size_t i = 1; i < points.size(); ++i)
+    triangles.push_back({points[i - 1], points[i], points[i - 1]});
+  return triangles;
 }
 
-std::vector<Piece> pieces_of(const TriangleSurface& surface) {
-  std::vector<Piece> pieces;
-  pieces.reserve(surface.triangles.size());
+std::vector<Triangle> triangles_of(const TriangleSurface& surface) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(surface.triangles.size());
   for (const auto& [a, b, c] : surface.triangles)
-    pieces.push_back({{surface.points[a], surface.points[b], surface.points[c]}, 3});
-  return pieces;
+    triangles.push_back({surface.points[a], surface.points[b], surface.points[c]});
+  return triangles;
 }
 
-std::vector<Piece> pieces_of(const AnyMesh& mesh, const EntityList& list) {
-  std::vector<Piece> pieces;
-  pieces.reserve(list.corners.size());
-  for (const auto& corners : list.corners) {
-    Piece piece = point_piece(in_space(mesh, corners[0]));
-    piece.corners = static_cast<std::size_t>(list.dimension) + 1;
-    for (std::size_t c = 1; c < piece.corners; ++c) piece.corner[c] = in_space(mesh, corners[c]);
-    pieces.push_back(piece);
-  }
-  return pieces;
+Triangle triangle_of(const AnyMesh& mesh, std::span<const std::uint32_t> corners) {
+  Triangle triangle;
+  for (std::size_t i = 0; i < 3; ++i)
+    triangle[i] = in_space(mesh, corners[i < corners.size() ? i : 0]);
+  return triangle;
+}
+
+std::vector<Triangle> triangles_of(const AnyMesh& mesh, const EntityList& list) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(list.corners.size());
+  for (const auto& corners : list.corners)
+    triangles.push_back(
+        triangle_of(mesh, std::span(corners).first(static_cast<std::size_t>(list.dimension) + 1)));
+  return triangles;
 }
 
 /// The facets of elements of a reference with none of them on the other side.
 template <int Dim>
-std::vector<Piece> rim_of(const AnyMesh& mesh, const FixedMesh<Dim>& fixed,
-                          std::int32_t reference) {
-  const auto& reference_of = elements_in<Dim>(mesh).reference;
-  std::vector<Piece> pieces;
-  for (std::size_t e = 0; e < fixed.element_count(); ++e) {
-    if (reference_of[e] != reference) continue;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      const ElementId other = fixed.neighbour_of[e][i];
-      if (other != none && reference_of[other] == reference) continue;
-      const auto facet = facet_of<Dim>(fixed.corners_of[e], static_cast<int>(i));
-      Piece piece = point_piece(in_space(mesh, facet[0]));
-      piece.corners = Dim;
-      for (std::size_t c = 1; c < Dim; ++c) piece.corner[c] = in_space(mesh, facet[c]);
-      pieces.push_back(piece);
-    }
-  }
-  return pieces;
+std::vector<Triangle> rim_of(const AdjacentMesh& mesh, std::int32_t reference) {
+  expect_corners<Dim>(mesh.executor(), mesh.mesh());
+  const auto& reference_of = elements_in<Dim>(mesh.mesh()).reference;
+  const std::vector<std::uint32_t> region_of(reference_of.begin(), reference_of.end());
+  std::vector<Triangle> triangles;
+  for (const auto& side : sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>(), region_of))
+    if (side.region == static_cast<std::uint32_t>(reference))
+      triangles.push_back(triangle_of(mesh.mesh(), side.corners));
+  return triangles;
 }
 
 // ---- Evaluation ----
@@ -191,7 +191,10 @@ class Evaluation {
   /// Regions come first, because they take the place of the size elsewhere.
   std::vector<double> run(const Sizes& sizes) {
     each_source(sizes, [&](const SizeSource& source) { take_regions(source); });
-    const double elsewhere = sizes.elsewhere > 0 ? sizes.elsewhere : extent();
+    const double diagonal = size_of_.empty() ? 1 : diagonal_of(mesh_);
+    const double elsewhere = sizes.elsewhere > 0 ? sizes.elsewhere
+                             : is_size(diagonal) ? diagonal
+                                                 : largest_size;
     for (double& size : size_of_)
       if (size == unlimited) size = elsewhere;
     each_source(sizes, [&](const SizeSource& source) {
@@ -234,17 +237,6 @@ class Evaluation {
         size_of_[corners[c]] = std::min(size_of_[corners[c]], size);
   }
 
-  /// The diagonal of the box around the vertices.
-  double extent() const {
-    Box<3> box = Box<3>::empty();
-    for (std::size_t v = 0; v < size_of_.size(); ++v) {
-      const Vector<3> at = in_space(mesh_, v);
-      box = join(box, {at, at});
-    }
-    const double diagonal = size_of_.empty() ? 1 : norm(box.high - box.low);
-    return is_size(diagonal) ? diagonal : largest_size;
-  }
-
   void refine(const SizeSource& source, const Ball& ball) {
     grow(source, [&](const Vector<3>& at, double) {
       return std::max(0.0, norm(at - ball.centre) - ball.radius);
@@ -258,13 +250,26 @@ class Evaluation {
       return norm(beyond);
     });
   }
-  void refine(const SizeSource& source, const Polyline& line) { refine(source, pieces_of(line)); }
-  void refine(const SizeSource& source, const TriangleSurface& surface) {
-    refine(source, pieces_of(surface));
+  void refine(const SizeSource& source, const Polyline& line) {
+    refine(source, triangles_of(line));
   }
-  void refine(const SizeSource& source, const std::vector<Piece>& pieces) {
-    const DistanceTree tree(executor_, pieces);
-    grow(source, [&](const Vector<3>& at, double most) { return tree.distance(at, most); });
+  void refine(const SizeSource& source, const TriangleSurface& surface) {
+    refine(source, triangles_of(surface));
+  }
+  void refine(const SizeSource& source, const std::vector<Triangle>& triangles) {
+    const BoxHierarchy<3> boxes(executor_, triangles.size(),
+                                [&](std::size_t i) { return box_around(triangles[i]); });
+    grow(source, [&](const Vector<3>& at, double most) {
+      double square = most * most;
+      boxes.visit_near(at, square, [&](std::size_t place) {
+        const Triangle& t = triangles[boxes.order()[place]];
+        const bool is_segment = t[2] == t[0];
+        const Vector<3> off =
+            (is_segment ? closest_point(std::array{t[0], t[1]}, at) : closest_point(t, at)) - at;
+        square = std::min(square, dot(off, off));
+      });
+      return std::min(most, std::sqrt(square));
+    });
   }
   void refine(const SizeSource& source, const Referenced&) { refine_entities(source); }
   void refine(const SizeSource& source, const Named&) { refine_entities(source); }
@@ -274,18 +279,12 @@ class Evaluation {
       if (dimension < mesh_.dimension) {
         const EntityList list = entities(dimension, reference);
         take_at(list, source.size);
-        if (grows(source.growth)) refine(source, pieces_of(mesh_, list));
+        if (grows(source.growth)) refine(source, triangles_of(mesh_, list));
       } else if (grows(source.growth)) {
-        refine(source, mesh_.dimension == 2 ? rim_of<2>(mesh_, fixed(plane_), reference)
-                                            : rim_of<3>(mesh_, fixed(space_), reference));
+        refine(source, mesh_.dimension == 2 ? rim_of<2>(adjacent_, reference)
+                                            : rim_of<3>(adjacent_, reference));
       }
     }
-  }
-
-  template <int Dim>
-  const FixedMesh<Dim>& fixed(std::vector<FixedMesh<Dim>>& made) {
-    if (made.empty()) made.push_back(make_fixed_mesh<Dim>(executor_, mesh_));
-    return made.front();
   }
 
   /// Makes sizes finer; distance(position, most) may say `most` where it is farther.
@@ -302,9 +301,8 @@ class Evaluation {
 
   const Executor& executor_;
   const AnyMesh& mesh_;
-  std::vector<double> size_of_;  // [vertex]
-  std::vector<FixedMesh<2>> plane_;
-  std::vector<FixedMesh<3>> space_;  // made when a region grows
+  std::vector<double> size_of_;              // [vertex]
+  AdjacentMesh adjacent_{executor_, mesh_};  // asked when a region grows
 };
 
 }  // namespace

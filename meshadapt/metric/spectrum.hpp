@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "ductile/meshadapt/metric.hpp"
@@ -56,7 +57,7 @@ struct Spectrum {
           for (const double value : scaled(v, factor)) determinant *= value;
           return share_of[v] * std::sqrt(determinant);
         },
-        [](double a, double b) { return a + b; });
+        std::plus<>());
   }
 
   std::vector<Metric<Dim>> metrics(const runtime::Executor& executor, double factor) const {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <functional>
 #include <numbers>
 #include <span>
 
@@ -124,7 +124,8 @@ runtime::UnsetVector<double> edge_lengths(const AdjacentMesh& mesh,
 
 template <int Dim, int Space>
 std::vector<double> qualities(const Executor& executor, const std::vector<Site<Space>>& site_of,
-                              const std::vector<Corners<Dim>>& elements) {
+                              const AnyMesh& mesh) {
+  const auto& elements = elements_in<Dim>(mesh).vertices;
   std::vector<double> quality_of_element(elements.size());
   runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
     quality_of_element[e] = quality_of<Dim>(corners_of<Dim>(site_of, elements[e]));
@@ -158,14 +159,13 @@ double complexity_of(const Executor& executor, const std::vector<Site<Space>>& s
         const double measure = std::abs(signed_measure<Dim>(corner));
         return measure > 0 || Dim == Space ? measure * mean_density<Dim>(corner) : 0;
       },
-      [](double a, double b) { return a + b; });
+      std::plus<>());
 }
 
 std::size_t count_if_below(const Executor& executor, std::span<const double> values, double bound) {
   return runtime::parallel_reduce(
       executor, values.size(), std::size_t{0},
-      [&](std::size_t i) { return std::size_t{values[i] < bound}; },
-      [](std::size_t a, std::size_t b) { return a + b; });
+      [&](std::size_t i) { return std::size_t{values[i] < bound}; }, std::plus<>());
 }
 
 template <int Dim, int Space = Dim>
@@ -178,7 +178,7 @@ MeshStatistics measure_in(const AdjacentMesh& adjacent, const AnyField* metric) 
 
   MeshStatistics result;
   result.in_metric = metric != nullptr;
-  result.quality = distribution(executor, qualities<Dim>(executor, site_of, elements), 0, 1);
+  result.quality = distribution(executor, qualities<Dim>(executor, site_of, mesh), 0, 1);
   if (metric) {
     result.complexity = complexity_of<Dim>(executor, site_of, elements);
     result.edges_short = count_if_below(executor, lengths, std::sqrt(0.5));
@@ -214,14 +214,11 @@ void expect_measurable(const Executor& executor, const AnyMesh& mesh, const AnyF
 std::vector<double> element_qualities(const Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric) {
   expect_measurable(executor, mesh, metric);
-  if (is_surface(mesh))
-    return qualities<2>(executor, make_sites<3>(executor, mesh, metric),
-                        elements_in<2>(mesh).vertices);
   if (mesh.dimension == 2)
-    return qualities<2>(executor, make_sites<2>(executor, mesh, metric),
-                        elements_in<2>(mesh).vertices);
-  return qualities<3>(executor, make_sites<3>(executor, mesh, metric),
-                      elements_in<3>(mesh).vertices);
+    return qualities<2>(executor, make_sites<2>(executor, mesh, metric), mesh);
+  const auto site_of = make_sites<3>(executor, mesh, metric);
+  return is_surface(mesh) ? qualities<2>(executor, site_of, mesh)
+                          : qualities<3>(executor, site_of, mesh);
 }
 
 MeshStatistics measure(const AdjacentMesh& mesh, const AnyField* metric) {

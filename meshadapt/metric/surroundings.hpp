@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

@@ -1,7 +1,6 @@
 #include "move/mover.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <utility>
 

@@ -1,11 +1,9 @@
 #include "move/part.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <set>
-#include <span>
 
 namespace ductile::meshadapt {
 
@@ -17,10 +15,10 @@ std::vector<std::uint8_t> marked(std::size_t count, const std::vector<std::uint3
   return marks;
 }
 
-/// The list of required facets of a mesh.
-template <int Dim>
-auto& required_facets(auto& mesh) {
-  return Dim == 2 ? mesh.required_edges : mesh.required_triangles;
+/// The list of required cells with so many corners of a mesh.
+template <int N>
+auto& required_of(auto& mesh) {
+  return N == 2 ? mesh.required_edges : mesh.required_triangles;
 }
 
 /// The largest reference that none of these is.
@@ -31,42 +29,6 @@ std::int32_t other_than(const std::vector<std::int32_t>& references) {
   return other;
 }
 
-/// Replaces listed facets or edges that could change by those that the part came back with, which
-/// are the ones whose reference is not `held`. Lists of indices follow.
-template <int N>
-class CellsRenewal {
- public:
-  CellsRenewal(Cells<N>& cells, const std::vector<std::uint8_t>& changes, const Cells<N>& in_part,
-               std::int32_t held, const PartNumbers& numbers)
-      : of_old_(cells.size(), none), of_part_(in_part.size(), none) {
-    Cells<N> renewed;
-    const auto add = [&](std::uint32_t& index, const Cells<N>& from, std::size_t c,
-                         const std::vector<VertexId>& number_of) {
-      auto vertices = from.vertices[c];
-      for (VertexId& v : vertices) v = number_of[v];
-      index = static_cast<std::uint32_t>(renewed.size());
-      renewed.add(vertices, from.reference[c]);
-    };
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      if (!changes[c]) add(of_old_[c], cells, c, numbers.of_old);
-    for (std::size_t c = 0; c < in_part.size(); ++c)
-      if (in_part.reference[c] != held) add(of_part_[c], in_part, c, numbers.of_part);
-    cells = std::move(renewed);
-  }
-
-  void renew(std::vector<std::uint32_t>& list, const std::vector<std::uint32_t>& in_part) const {
-    std::vector<std::uint32_t> renewed;
-    for (const std::uint32_t c : list)
-      if (of_old_[c] != none) renewed.push_back(of_old_[c]);
-    for (const std::uint32_t c : in_part)
-      if (of_part_[c] != none) renewed.push_back(of_part_[c]);
-    list = std::move(renewed);
-  }
-
- private:
-  std::vector<std::uint32_t> of_old_, of_part_;  // new indices, or none
-};
-
 }  // namespace
 
 template <int Dim>
@@ -75,19 +37,16 @@ Part<Dim>::Part(const MovingMesh<Dim>& whole, const FixedMesh<Dim>& topology,
     : whole_(whole),
       topology_(topology),
       is_chosen_(is_chosen),
-      held_facet_(other_than(facets_in<Dim>(whole.any).reference)),
-      held_edge_(other_than(whole.any.edges.reference)),
-      local_of_(whole.site_of.size(), none),
-      facet_changes_(facets_in<Dim>(whole.any).size(), 0),
-      edge_changes_(Dim == 3 ? whole.any.edges.size() : 0, 0) {
+      held_{other_than(whole.any.edges.reference), other_than(whole.any.triangles.reference)},
+      local_of_(whole.site_of.size(), none) {
   mesh_.dimension = Dim;
   mesh_.name = whole.any.name;
   for (std::size_t e = 0; e < is_chosen.size(); ++e)
     if (is_chosen[e]) elements_.push_back(static_cast<ElementId>(e));
   take_vertices();
-  take_facets();
+  take_listed<2>();
+  if constexpr (Dim == 3) take_listed<3>();
   take_cut();
-  take_edges();
   take_marks();
 }
 
@@ -133,32 +92,32 @@ void Part<Dim>::take_vertices() {
     mesh_.coordinates.insert(mesh_.coordinates.end(), position.x.begin(), position.x.end());
     mesh_.vertex_reference.push_back(whole_.any.vertex_reference[v]);
   }
-  stays_.resize(vertices_.size(), 0);
   auto& cells = elements_in<Dim>(mesh_);
   for (const ElementId e : elements_)
     cells.add(local(topology_.corners_of[e]), elements_in<Dim>(whole_.any).reference[e]);
 }
 
-/// Facets between the part and the others, which are not listed here, follow in take_cut().
+/// Takes the listed cells with N corners: facets, or edges of tetrahedra. Facets between the part
+/// and the others follow in take_cut(), whether they are listed or not.
 template <int Dim>
-void Part<Dim>::take_facets() {
-  const auto& listed = facets_in<Dim>(whole_.any);
-  const auto required = marked(listed.size(), required_facets<Dim>(whole_.any));
+template <int N>
+void Part<Dim>::take_listed() {
+  const Cells<N>& listed = facets_in<N>(whole_.any);
+  const auto required = marked(listed.size(), required_of<N>(whole_.any));
   const auto ridge = marked(whole_.any.edges.size(), whole_.any.ridges);
-  auto& cells = facets_in<Dim>(mesh_);
-  for (std::size_t f = 0; f < listed.size(); ++f) {
-    const Facet<Dim>& corners = listed.vertices[f];
+  Cells<N>& cells = facets_in<N>(mesh_);
+  changes_[N - 2].assign(listed.size(), 0);
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    const auto& corners = listed.vertices[i];
     if (local_of_[corners[0]] == none) continue;
     const auto [inside, outside] = count_around(corners);
-    if (inside == 0 || outside != 0) continue;
+    if (inside == 0 || (N == Dim && outside != 0)) continue;
     const auto index = static_cast<std::uint32_t>(cells.size());
-    const bool held = required[f] || has_paths(corners);
-    facet_changes_[f] = !held;
-    if (held) required_facets<Dim>(mesh_).push_back(index);
-    if (!held && Dim == 2 && ridge[f]) mesh_.ridges.push_back(index);
-    cells.add(local(corners), held ? held_facet_ : listed.reference[f]);
-    for (const VertexId v : corners)
-      if (whole_.path_of[v] != none) stays_[local_of_[v]] = 1;
+    const bool held = outside != 0 || required[i] || has_paths(corners);
+    changes_[N - 2][i] = !held;
+    if (held) required_of<N>(mesh_).push_back(index);
+    if (N == 2 && ridge[i]) mesh_.ridges.push_back(index);
+    cells.add(local(corners), held ? held_[N - 2] : listed.reference[i]);
   }
 }
 
@@ -169,40 +128,19 @@ void Part<Dim>::take_cut() {
     for (int i = 0; i <= Dim; ++i) {
       const ElementId other = topology_.neighbour_of[e][static_cast<std::size_t>(i)];
       if (other == none || is_chosen_[other]) continue;
-      required_facets<Dim>(mesh_).push_back(static_cast<std::uint32_t>(cells.size()));
-      cells.add(local(facet_of<Dim>(topology_.corners_of[e], i)), held_facet_);
+      required_of<Dim>(mesh_).push_back(static_cast<std::uint32_t>(cells.size()));
+      cells.add(local(facet_of<Dim>(topology_.corners_of[e], i)), held_[Dim - 2]);
     }
-}
-
-template <int Dim>
-void Part<Dim>::take_edges() {
-  if constexpr (Dim == 3) {
-    const auto& listed = whole_.any.edges;
-    const auto required = marked(listed.size(), whole_.any.required_edges);
-    const auto ridge = marked(listed.size(), whole_.any.ridges);
-    for (std::size_t e = 0; e < listed.size(); ++e) {
-      const auto& ends = listed.vertices[e];
-      if (local_of_[ends[0]] == none) continue;
-      const auto [inside, outside] = count_around(ends);
-      if (inside == 0) continue;
-      const auto index = static_cast<std::uint32_t>(mesh_.edges.size());
-      const bool held = outside != 0 || required[e] || has_paths(ends);
-      edge_changes_[e] = !held;
-      if (held) mesh_.required_edges.push_back(index);
-      if (ridge[e]) mesh_.ridges.push_back(index);
-      mesh_.edges.add(local(ends), held ? held_edge_ : listed.reference[e]);
-    }
-  }
 }
 
 template <int Dim>
 void Part<Dim>::take_marks() {
-  for (const std::uint32_t v : whole_.any.required_vertices)
-    if (local_of_[v] != none) stays_[local_of_[v]] = 1;
+  const auto required = marked(local_of_.size(), whole_.any.required_vertices);
+  for (std::size_t v = 0; v < vertices_.size(); ++v)
+    if (required[vertices_[v]] || whole_.path_of[vertices_[v]] != none)
+      mesh_.required_vertices.push_back(static_cast<VertexId>(v));
   for (const std::uint32_t v : whole_.any.corners)
     if (local_of_[v] != none) mesh_.corners.push_back(local_of_[v]);
-  for (std::size_t v = 0; v < stays_.size(); ++v)
-    if (stays_[v]) mesh_.required_vertices.push_back(static_cast<std::uint32_t>(v));
 }
 
 template <int Dim>
@@ -238,20 +176,34 @@ PartNumbers Part<Dim>::number_vertices(const std::vector<VertexId>& origin_of,
   return numbers;
 }
 
+/// Replaces the listed cells that could change by those that the part came back with, which are the
+/// ones whose reference is not that of held ones. Lists of their indices follow.
 template <int Dim>
-void Part<Dim>::renew_lists(AnyMesh& any, const AnyMesh& adapted,
-                            const PartNumbers& numbers) const {
-  const CellsRenewal facets(facets_in<Dim>(any), facet_changes_, facets_in<Dim>(adapted),
-                            held_facet_, numbers);
-  facets.renew(required_facets<Dim>(any), required_facets<Dim>(adapted));
-  if constexpr (Dim == 2) facets.renew(any.ridges, adapted.ridges);
-  if constexpr (Dim == 3) {
-    const CellsRenewal edges(any.edges, edge_changes_, adapted.edges, held_edge_, numbers);
-    edges.renew(any.required_edges, adapted.required_edges);
-    edges.renew(any.ridges, adapted.ridges);
-  }
-  for (auto* list : {&any.corners, &any.required_vertices})
-    for (std::uint32_t& v : *list) v = numbers.of_old[v];
+template <int N>
+void Part<Dim>::renew_listed(AnyMesh& any, const AnyMesh& adapted,
+                             const PartNumbers& numbers) const {
+  const Cells<N> before = std::exchange(facets_in<N>(any), {});
+  const Cells<N>& in_part = facets_in<N>(adapted);
+  std::vector<std::uint32_t> of_old(before.size(), none), of_part(in_part.size(), none);
+  const auto add = [&](std::uint32_t& index, const Cells<N>& from, std::size_t c,
+                       const std::vector<VertexId>& number_of) {
+    auto vertices = from.vertices[c];
+    for (VertexId& v : vertices) v = number_of[v];
+    index = static_cast<std::uint32_t>(facets_in<N>(any).size());
+    facets_in<N>(any).add(vertices, from.reference[c]);
+  };
+  for (std::size_t c = 0; c < before.size(); ++c)
+    if (!changes_[N - 2][c]) add(of_old[c], before, c, numbers.of_old);
+  for (std::size_t c = 0; c < in_part.size(); ++c)
+    if (in_part.reference[c] != held_[N - 2]) add(of_part[c], in_part, c, numbers.of_part);
+  const auto renew_list = [&](std::vector<std::uint32_t>& list,
+                              const std::vector<std::uint32_t>& of_adapted) {
+    for (std::uint32_t& c : list) c = of_old[c];
+    for (const std::uint32_t c : of_adapted) list.push_back(of_part[c]);
+    std::erase(list, none);
+  };
+  renew_list(required_of<N>(any), required_of<N>(adapted));
+  if (N == 2) renew_list(any.ridges, adapted.ridges);
 }
 
 template <int Dim>
@@ -286,7 +238,10 @@ template <int Dim>
 Renewals Part<Dim>::put_back(MovingMesh<Dim>& whole, const AdaptedPart<Dim>& adapted) const {
   Renewals renewals;
   const PartNumbers numbers = number_vertices(adapted.origins.vertex, renewals.vertices);
-  renew_lists(whole.any, adapted.mesh, numbers);
+  renew_listed<2>(whole.any, adapted.mesh, numbers);
+  if constexpr (Dim == 3) renew_listed<3>(whole.any, adapted.mesh, numbers);
+  for (auto* list : {&whole.any.corners, &whole.any.required_vertices})
+    for (std::uint32_t& v : *list) v = numbers.of_old[v];
   renew_elements(whole, adapted.mesh, numbers, renewals.elements);
   renew(whole.any.vertex_reference, renewals.vertices,
         [&](auto v) { return adapted.mesh.vertex_reference[v]; });

@@ -59,25 +59,25 @@ class Part {
   bool has_paths(std::span<const VertexId> vertices) const;
 
   void take_vertices();
-  void take_facets();
+  template <int N>
+  void take_listed();
   void take_cut();
-  void take_edges();
   void take_marks();
   PartNumbers number_vertices(const std::vector<VertexId>& origin_of, Renewal& renewal) const;
-  void renew_lists(AnyMesh& any, const AnyMesh& adapted, const PartNumbers& numbers) const;
+  template <int N>
+  void renew_listed(AnyMesh& any, const AnyMesh& adapted, const PartNumbers& numbers) const;
   void renew_elements(MovingMesh<Dim>& whole, const AnyMesh& adapted, const PartNumbers& numbers,
                       Renewal& renewal) const;
 
   const MovingMesh<Dim>& whole_;
   const FixedMesh<Dim>& topology_;
   const std::vector<std::uint8_t>& is_chosen_;
-  std::int32_t held_facet_, held_edge_;  // references in the part of facets and edges that stay
+  std::array<std::int32_t, 2> held_;  // references in the part of edges and triangles that stay
   std::vector<VertexId> vertices_;
   std::vector<ElementId> elements_;
-  std::vector<VertexId> local_of_;           // [vertex of the whole], or none
-  std::vector<std::uint8_t> facet_changes_;  // [listed facet of the whole], may it change?
-  std::vector<std::uint8_t> edge_changes_;   // [listed edge of the whole], in 3D
-  std::vector<std::uint8_t> stays_;          // [vertex of the part], is it required?
+  std::vector<VertexId> local_of_;                    // [vertex of the whole], or none
+  std::array<std::vector<std::uint8_t>, 2> changes_;  // [listed edge, or triangle, of the whole],
+                                                      // may it change?
   AnyMesh mesh_;
 };
 

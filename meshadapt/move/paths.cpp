@@ -6,10 +6,10 @@
 #include <numbers>
 #include <string>
 
-#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
 
@@ -198,35 +198,20 @@ template <int Dim>
 std::vector<std::uint8_t> Paths<Dim>::within_reach(const Executor& executor,
                                                    const std::vector<Vector<Dim>>& position_of,
                                                    double share, double next) const {
-  struct Box {
-    Vector<Dim> low, high;
-  };
-  std::vector<Box> boxes;
+  std::vector<Box<Dim>> boxes;
   for (const Body& body : bodies_) {
     if (!body.moves) continue;
-    Box box{at(body.paths[0], share), at(body.paths[0], share)};
+    auto box = Box<Dim>::empty();
     for (const std::uint32_t p : body.paths)
-      for (const Vector<Dim>& point : {at(p, share), at(p, next)})
-        for (int i = 0; i < Dim; ++i) {
-          box.low[i] = std::min(box.low[i], point[i]);
-          box.high[i] = std::max(box.high[i], point[i]);
-        }
+      box = join(box, box_around(std::array{at(p, share), at(p, next)}));
     double side = 0;
     for (int i = 0; i < Dim; ++i) side = std::max(side, box.high[i] - box.low[i]);
-    for (int i = 0; i < Dim; ++i) {
-      box.low[i] -= reach * side + body.margin;
-      box.high[i] += reach * side + body.margin;
-    }
-    boxes.push_back(box);
+    boxes.push_back(grown(box, reach * side + body.margin));
   }
   std::vector<std::uint8_t> near(position_of.size());
   parallel_for(executor, position_of.size(), [&](std::size_t v) {
-    near[v] = std::ranges::any_of(boxes, [&](const Box& box) {
-      bool inside = true;
-      for (int i = 0; i < Dim; ++i)
-        inside = inside && position_of[v][i] >= box.low[i] && position_of[v][i] <= box.high[i];
-      return inside;
-    });
+    const Box<Dim> here{position_of[v], position_of[v]};
+    near[v] = std::ranges::any_of(boxes, [&](const Box<Dim>& box) { return meet(box, here); });
   });
   return near;
 }

@@ -68,15 +68,5 @@ RigidMotion<Dim> closest_motion(const std::vector<Vector<Dim>>& from,
 
 extern template struct Rotation<2>;
 extern template struct Rotation<3>;
-extern template Metric<2> deformed<2>(const Metric<2>&, const LinearMap<2>&);
-extern template Metric<3> deformed<3>(const Metric<3>&, const LinearMap<3>&);
-extern template LinearMap<2> deformation<2>(const std::array<Vector<2>, 3>&,
-                                            const std::array<Vector<2>, 3>&);
-extern template LinearMap<3> deformation<3>(const std::array<Vector<3>, 4>&,
-                                            const std::array<Vector<3>, 4>&);
-extern template RigidMotion<2> closest_motion(const std::vector<Vector<2>>&,
-                                              const std::vector<Vector<2>>&);
-extern template RigidMotion<3> closest_motion(const std::vector<Vector<3>>&,
-                                              const std::vector<Vector<3>>&);
 
 }  // namespace ductile::meshadapt

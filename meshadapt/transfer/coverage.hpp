@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
@@ -23,8 +24,7 @@ template <int Dim>
 Coverage coverage(const runtime::Executor& executor, const FixedMesh<Dim>& old_mesh,
                   const FixedMesh<Dim>& new_mesh, const std::vector<double>& covered) {
   const auto sum = [&](std::size_t count, auto&& term) {
-    return runtime::parallel_reduce(executor, count, 0.0, term,
-                                    [](double a, double b) { return a + b; });
+    return runtime::parallel_reduce(executor, count, 0.0, term, std::plus<>());
   };
   const double shared = sum(covered.size(), [&](std::size_t e) {
     return new_mesh.volume_of[e] * std::min(1.0, covered[e]);

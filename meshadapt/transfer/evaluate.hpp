@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -55,7 +56,7 @@ Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim, Sp
   });
   result.outside = runtime::parallel_reduce(
       executor, outside.size(), std::size_t{0}, [&](std::size_t i) { return outside[i]; },
-      [](std::size_t a, std::size_t b) { return a + b; });
+      std::plus<>());
   return result;
 }
 

@@ -1,17 +1,15 @@
 #include "ductile/meshadapt/transfer.hpp"
 
 #include <algorithm>
-#include <compare>
-#include <span>
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/sort.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/sorted_cells.hpp"
 #include "mesh/wording.hpp"
 #include "transfer/locator.hpp"
 #include "transfer/places.hpp"
@@ -23,14 +21,6 @@ using runtime::Executor;
 using runtime::parallel_for;
 
 namespace {
-
-/// A listed facet by its corners.
-template <int Dim>
-struct ListedFacet {
-  Facet<Dim> corners;  // ascending
-  std::uint32_t index = none;
-  friend auto operator<=>(const ListedFacet&, const ListedFacet&) = default;
-};
 
 template <int Dim, int Space>
 class OriginFinder {
@@ -91,21 +81,13 @@ class OriginFinder {
   }
 
   void find_facets() {
-    const auto& old_facets = facets_in<Dim>(before_).vertices;
+    const auto listed = sorted_cells(executor_, facets_in<Dim>(before_).vertices);
     const auto& facets = facets_in<Dim>(after_).vertices;
-    std::vector<ListedFacet<Dim>> listed(old_facets.size());
-    parallel_for(executor_, listed.size(), [&](std::size_t f) {
-      listed[f] = {old_facets[f], static_cast<std::uint32_t>(f)};
-      std::sort(listed[f].corners.begin(), listed[f].corners.end());
-    });
-    runtime::parallel_sort(executor_, std::span(listed));
     found_.facet = runtime::make_vector<std::uint32_t>(executor_, facets.size());
     parallel_for(executor_, facets.size(), [&](std::size_t f) {
       Facet<Dim> corners = facets[f];
       for (VertexId& v : corners) v = found_.vertex[v];
-      std::sort(corners.begin(), corners.end());
-      const auto at = std::lower_bound(listed.begin(), listed.end(), ListedFacet<Dim>{corners, 0});
-      found_.facet[f] = at != listed.end() && at->corners == corners ? at->index : none;
+      found_.facet[f] = find_cell<Dim>(listed, corners);
     });
   }
 

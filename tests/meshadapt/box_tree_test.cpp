@@ -144,7 +144,8 @@ TYPED_TEST(BoxTreeIn, TheIndexFindsTheBoxesThatMeetAnother) {
       return box;
     };
     for (auto& box : boxes) box = random_box();
-    const BoxHierarchy<Dim> index(count, [&](std::size_t i) { return boxes[i]; });
+    const BoxHierarchy<Dim> index(runtime::Executor({.threads = 1}), count,
+                                  [&](std::size_t i) { return boxes[i]; });
     for (int trial = 0; trial < 100; ++trial) {
       const auto box = random_box();
       std::multiset<std::size_t> found, expected;
