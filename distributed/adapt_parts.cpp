@@ -30,32 +30,27 @@ class Parts {
       : comm_(comm), executor_(executor), options_(options), part_(std::move(part)) {}
 
   AdaptedParts run() {
-    std::vector<PassReport> reports;
     find_interfaces();
     find_geometry();
     limit_sizes();
     if (share_out(Displaced::not_at_all, is_scattered() ? 0 : beforehand)) find_interfaces();
-    end(Phase::balance);
     if (is_much_too_fine()) {
       coarsen();
       displace();
     }
+    std::int64_t blocked = 0;  // in the last pass
     for (int pass = 1;; ++pass) {
-      reports.push_back(adapt(pass));
-      reports.back().costs = take_costs();
-      if (options_.told) options_.told(reports.back());
-      const std::int64_t before = pass == 1 ? 0 : reports[reports.size() - 2].blocked;
-      if (pass >= options_.passes || !is_worthwhile(reports.back(), before)) break;
+      const PassReport report = adapt(pass);
+      if (options_.told) options_.told(report);
+      const std::int64_t before = std::exchange(blocked, report.blocked);
+      if (pass >= options_.passes || !is_worthwhile(report, before)) break;
       displace();
     }
     share_out(Displaced::not_at_all, at_the_end);
     find_interfaces();
     const std::int64_t own = number_vertices(comm_, interfaces_, part_);
-    end(Phase::balance);
     auto warnings = warnings_of_ranks(comm_, warnings_);
-    const auto costs = take_costs();
-    return {std::move(part_),   std::move(interfaces_), own, std::move(reports), costs,
-            std::move(warnings)};
+    return {std::move(part_), std::move(interfaces_), own, std::move(warnings)};
   }
 
  private:
@@ -63,28 +58,6 @@ class Parts {
   static constexpr double much_too_fine = 1.75;  // ratio of elements to target elements
   static constexpr int layers = 3;               // layers around held entities that are adapted
                                                  // with them
-
-  /// Attributes the costs since the last phase ended to this phase.
-  void end(Phase phase) {
-    const Costs now = comm_.costs();
-    Costs& costs = costs_[static_cast<std::size_t>(phase)];
-    costs.seconds += now.seconds - before_.seconds;
-    costs.bytes += now.bytes - before_.bytes;
-    before_ = now;
-  }
-
-  /// Costs of all ranks since the last call.
-  std::array<Costs, phase_count> take_costs() {
-    std::vector<std::int64_t> all;
-    for (const Costs& costs : costs_) {
-      all.push_back(static_cast<std::int64_t>(1e6 * costs.seconds));
-      all.push_back(costs.bytes);
-    }
-    all = comm_.sums(std::move(all));
-    for (std::size_t p = 0; p < phase_count; ++p)
-      costs_[p] = {1e-6 * static_cast<double>(all[2 * p]), all[2 * p + 1]};
-    return std::exchange(costs_, {});
-  }
 
   void find_interfaces() {
     comm_.on_all([&] { list_boundary(executor_, part_); });
@@ -98,7 +71,6 @@ class Parts {
       return;
     make.geometry = geometry_of_parts(comm_, executor_, part_, make);
     make.functions.clear();
-    end(Phase::balance);
   }
 
   /// Applies the options' limits on sizes and growth to the target, across ranks too.
@@ -110,7 +82,6 @@ class Parts {
           comm_.on_all([&] { return bound_at_curves(executor_, part_, interfaces_, options_); });
     const double growth = growth_of(options_.adapt);
     if (at_curves || growth > 0) grade(comm_, executor_, part_, interfaces_, growth);
-    end(Phase::gradation);
   }
 
   /// Are interfaces everywhere, as between parts of every second element? Then nothing can be
@@ -136,7 +107,6 @@ class Parts {
     constexpr std::array places{Displaced::not_at_all, Displaced::forth, Displaced::back};
     share_out(places[++times_displaced_ % places.size()], 0);
     find_interfaces();
-    end(Phase::migration);
     limit_sizes();
   }
 
@@ -161,7 +131,6 @@ class Parts {
     options.adapt.gradation = options.adapt.required_gradation = 0;
     options.adapt.curved_sizes = false;
     take(comm_.on_all([&] { return adapt_part(executor_, part_, interfaces_, options); }));
-    end(Phase::adaptation);
   }
 
   void take(AdaptedPart adapted) {
@@ -190,7 +159,6 @@ class Parts {
     const auto elements = static_cast<std::int64_t>(part_.element_count());
     const auto sums = comm_.sums({elements, edges.all, edges.blocked});
     const std::int64_t most = comm_.largest(elements);
-    end(Phase::adaptation);
     const std::int64_t microseconds =
         comm_.largest(static_cast<std::int64_t>(1e6 * (MPI_Wtime() - begin)));
     return {pass,
@@ -199,8 +167,7 @@ class Parts {
             sums[2],
             static_cast<double>(most * comm_.size()) /
                 static_cast<double>(std::max<std::int64_t>(1, sums[0])),
-            1e-6 * static_cast<double>(microseconds),
-            {}};
+            1e-6 * static_cast<double>(microseconds)};
   }
 
   /// Is another pass worthwhile? A second pass always is, because the interfaces of the first come
@@ -224,8 +191,6 @@ class Parts {
   Interfaces interfaces_;
   meshadapt::Warnings warnings_;
   std::size_t times_displaced_ = 0;
-  std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank
-  Costs before_ = comm_.costs();
 };
 
 }  // namespace

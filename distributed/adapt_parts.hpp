@@ -4,12 +4,9 @@
 /// so that the next pass adapts what was held. At the end elements are redistributed.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "distributed/adapt_part.hpp"
 #include "distributed/communicator.hpp"
@@ -21,10 +18,6 @@
 
 namespace ductile::distributed {
 
-/// The phases of a pass.
-enum class Phase : std::uint8_t { balance, migration, gradation, adaptation };
-inline constexpr std::size_t phase_count = 4;
-
 /// State of the mesh after a pass; figures over all ranks.
 struct PassReport {
   int pass = 0;  ///< from 1
@@ -33,8 +26,6 @@ struct PassReport {
   std::int64_t blocked = 0;  ///< of these, far from the target length (see EdgesAtInterfaces)
   double imbalance = 1;      ///< largest number of elements of a rank divided by the mean
   double seconds = 0;        ///< of this pass, on the slowest rank
-  /// [phase] Costs of all ranks since the last pass.
-  std::array<Costs, phase_count> costs = {};
 };
 
 /// A line about a pass.
@@ -54,10 +45,8 @@ struct AdaptPartsOptions : AdaptPartOptions {
 struct AdaptedParts {
   Part part;  ///< numbered in the order of the ranks; lists its boundary
   Interfaces interfaces;
-  std::int64_t own = 0;  ///< number of vertices that this rank has numbered
-  std::vector<PassReport> passes;
-  std::array<Costs, phase_count> last = {};  ///< after the last pass
-  meshadapt::Warnings warnings = {};         ///< of adapt() on all ranks, see warnings_of_ranks()
+  std::int64_t own = 0;               ///< number of vertices that this rank has numbered
+  meshadapt::Warnings warnings = {};  ///< of adapt() on all ranks, see warnings_of_ranks()
 };
 
 /// Adapts the part of each rank. On one rank the result is that of adapt(). It depends on the

@@ -2,7 +2,6 @@
 /// Load balance: distributes elements so that each rank has about equal work.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "distributed/bisection.hpp"

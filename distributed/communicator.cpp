@@ -1,7 +1,6 @@
 #include "distributed/communicator.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -11,12 +10,6 @@ namespace ductile::distributed {
 Communicator::Communicator(MPI_Comm handle) : handle_(handle) {
   MPI_Comm_rank(handle, &rank_);
   MPI_Comm_size(handle, &size_);
-}
-
-double Communicator::processor_seconds() {
-  std::timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 std::int64_t Communicator::sum(std::int64_t value) const { return sums({value}).front(); }
@@ -86,10 +79,6 @@ Communicator::Counts Communicator::exchange_counts(const std::vector<std::size_t
 
 void Communicator::exchange_bytes(const void* sent, void* received, const Counts& counts,
                                   std::size_t bytes_each) const {
-  for (int rank = 0; rank < size_; ++rank)
-    if (rank != rank_)
-      costs_.bytes +=
-          counts.sent[static_cast<std::size_t>(rank)] * static_cast<std::int64_t>(bytes_each);
   MPI_Datatype item = MPI_DATATYPE_NULL;
   MPI_Type_contiguous(static_cast<int>(bytes_each), MPI_BYTE, &item);
   MPI_Type_commit(&item);

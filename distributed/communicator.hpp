@@ -55,12 +55,6 @@ struct Received {
 template <class T>
 using PerRank = std::vector<std::vector<T>>;
 
-/// Work of a rank since it made its Communicator.
-struct Costs {
-  double seconds = 0;      ///< processor time between messages, on all threads
-  std::int64_t bytes = 0;  ///< of lists, sent to other ranks
-};
-
 class Communicator {
  public:
   /// Refers to `handle`, which the caller owns.
@@ -78,12 +72,6 @@ class Communicator {
   std::int64_t sum_before(std::int64_t value) const;
   /// The sum over the ranks of each of several values.
   std::vector<std::int64_t> sums(std::vector<std::int64_t> values) const;
-
-  const Costs& costs() const { return costs_; }
-  /// Processor time of this rank so far.
-  static double processor_seconds();
-  /// Adds processor time that costs() cannot see.
-  void add_work(double seconds) const { costs_.seconds += seconds; }
 
   /// Throws AgreedError on all ranks if `failure` is set on any, with the text of the first.
   void agree(const std::optional<std::string>& failure) const;
@@ -110,21 +98,18 @@ class Communicator {
 
   MPI_Comm handle_;
   int rank_ = 0, size_ = 1;
-  mutable Costs costs_;  // mutable, because const members do the work
 };
 
 template <class Work>
 auto Communicator::on_all(Work&& work) const {
   using Result = std::invoke_result_t<Work&>;
   std::conditional_t<std::is_void_v<Result>, std::optional<int>, std::optional<Result>> result;
-  const double begin = processor_seconds();
   const std::optional<std::string> failure = failure_of([&] {
     if constexpr (std::is_void_v<Result>)
       work();
     else
       result.emplace(work());
   });
-  add_work(processor_seconds() - begin);
   agree(failure);
   if constexpr (!std::is_void_v<Result>) return *std::move(result);
 }

@@ -1,63 +1,40 @@
 #include "distributed/gather_overlap.hpp"
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <numeric>
 #include <span>
 
 #include "distributed/element_lists.hpp"
+#include "mesh/box.hpp"
 
 namespace ductile::distributed {
 
 namespace {
 
+using meshadapt::Box;
 using meshadapt::NamedField;
-
-template <int Dim>
-struct Box {
-  std::array<double, Dim> low, high;
-
-  static Box empty() {
-    Box box;
-    box.low.fill(std::numeric_limits<double>::infinity());
-    box.high.fill(-std::numeric_limits<double>::infinity());
-    return box;
-  }
-  void add(const std::array<double, Dim>& point) {
-    for (std::size_t a = 0; a < Dim; ++a) {
-      low[a] = std::min(low[a], point[a]);
-      high[a] = std::max(high[a], point[a]);
-    }
-  }
-  void add(const Box& other) {
-    add(other.low);
-    add(other.high);
-  }
-  bool touches(const Box& other) const {
-    for (std::size_t a = 0; a < Dim; ++a)
-      if (low[a] > other.high[a] || other.low[a] > high[a]) return false;
-    return true;
-  }
-};
 
 template <int Dim>
 Box<Dim> box_of(const AnyMesh& mesh, const meshadapt::Corners<Dim>& corners) {
   auto box = Box<Dim>::empty();
-  for (const VertexId v : corners) box.add(meshadapt::position_in<Dim>(mesh, v).x);
+  for (const VertexId v : corners) {
+    const auto position = meshadapt::position_in<Dim>(mesh, v);
+    box = join(box, {position, position});
+  }
   return box;
 }
 
 // ---- Boxes of a part ----
 
-/// Divides elements at the median of the longest side, a few times.
+/// Boxes around the elements of a part, which are divided at the median of the longest side, a few
+/// times. None for an empty part.
 template <int Dim>
 class Boxes {
  public:
   explicit Boxes(const AnyMesh& mesh)
       : mesh_(mesh), elements_(meshadapt::elements_in<Dim>(mesh).vertices) {}
 
-  std::vector<double> make() {
+  std::vector<Box<Dim>> make() {
     std::vector<std::uint32_t> all(elements_.size());
     std::iota(all.begin(), all.end(), 0U);
     divide(all, 0);
@@ -70,14 +47,14 @@ class Boxes {
   void divide(std::span<std::uint32_t> some, int depth) {
     if (some.empty()) return;
     auto box = Box<Dim>::empty();
-    for (const std::uint32_t e : some) box.add(box_of<Dim>(mesh_, elements_[e]));
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < Dim; ++a)
+    for (const std::uint32_t e : some) box = join(box, box_of<Dim>(mesh_, elements_[e]));
+    int axis = 0;
+    for (int a = 1; a < Dim; ++a)
       if (box.high[a] - box.low[a] > box.high[axis] - box.low[axis]) axis = a;
     if (depth == times || some.size() == 1) return put(box, box.high[axis] - box.low[axis]);
     const auto place = [&](std::uint32_t e) {
       double sum = 0;
-      for (const VertexId v : elements_[e]) sum += mesh_.coordinates[std::size_t{v} * Dim + axis];
+      for (const VertexId v : elements_[e]) sum += meshadapt::position_in<Dim>(mesh_, v)[axis];
       return std::pair(sum, e);
     };
     const std::size_t half = some.size() / 2;
@@ -88,37 +65,28 @@ class Boxes {
   }
 
   /// Adds a slightly enlarged box, to include elements closest to a boundary that has moved.
-  void put(const Box<Dim>& box, double longest) {
+  void put(Box<Dim> box, double longest) {
     constexpr double margin = 0.05;
-    for (const double x : box.low) boxes_.push_back(x - margin * longest);
-    for (const double x : box.high) boxes_.push_back(x + margin * longest);
+    for (double& x : box.low.x) x -= margin * longest;
+    for (double& x : box.high.x) x += margin * longest;
+    boxes_.push_back(box);
   }
 
   const AnyMesh& mesh_;
   const std::vector<meshadapt::Corners<Dim>>& elements_;
-  std::vector<double> boxes_;
+  std::vector<Box<Dim>> boxes_;
 };
-
-template <int Dim>
-std::vector<Box<Dim>> boxes_in(std::span<const double> numbers) {
-  std::vector<Box<Dim>> boxes(numbers.size() / (2 * Dim));
-  for (std::size_t b = 0; b < boxes.size(); ++b) {
-    std::copy_n(&numbers[b * 2 * Dim], Dim, boxes[b].low.begin());
-    std::copy_n(&numbers[b * 2 * Dim + Dim], Dim, boxes[b].high.begin());
-  }
-  return boxes;
-}
 
 /// The elements of a part that intersect any of these boxes.
 template <int Dim>
-std::vector<std::uint32_t> touching(const Part& part, const std::vector<Box<Dim>>& boxes) {
+std::vector<std::uint32_t> touching(const Part& part, std::span<const Box<Dim>> boxes) {
   auto all = Box<Dim>::empty();
-  for (const Box<Dim>& box : boxes) all.add(box);
+  for (const Box<Dim>& box : boxes) all = join(all, box);
   std::vector<std::uint32_t> found;
   const auto& elements = meshadapt::elements_in<Dim>(part.mesh).vertices;
   for (std::uint32_t e = 0; e < elements.size(); ++e) {
-    const auto box = box_of<Dim>(part.mesh, elements[e]);
-    const auto meets = [&](const Box<Dim>& other) { return box.touches(other); };
+    const Box<Dim> box = box_of<Dim>(part.mesh, elements[e]);
+    const auto meets = [&](const Box<Dim>& other) { return meet(box, other); };
     if (meets(all) && std::any_of(boxes.begin(), boxes.end(), meets)) found.push_back(e);
   }
   return found;
@@ -161,20 +129,20 @@ struct Values {
   }
 };
 
-/// On this rank: the elements of the parts `from` that intersect its boxes. Collective.
+/// gather_overlap() in this dimension.
 template <int Dim>
 PartWithFields gathered_overlap(const Communicator& comm, const Part& from,
-                                const std::vector<NamedField>& fields,
-                                const std::vector<double>& boxes) {
+                                const std::vector<NamedField>& fields, const Part& to_part) {
   const auto ranks = static_cast<std::size_t>(comm.size());
   const Values at_vertices{fields, NamedField::Place::vertices, Dim};
   const Values on_elements{fields, NamedField::Place::elements, Dim};
-  const auto all_boxes = comm.exchange(comm.on_all([&] { return PerRank<double>(ranks, boxes); }));
+  const auto boxes_of = comm.exchange(
+      comm.on_all([&] { return PerRank<Box<Dim>>(ranks, Boxes<Dim>(to_part.mesh).make()); }));
   PerRank<double> vertex_values(ranks), element_values(ranks);
   const SentElements<Dim> sent = comm.on_all([&] {
     PerRank<std::uint32_t> to;
     for (int rank = 0; rank < comm.size(); ++rank)
-      to.push_back(touching<Dim>(from, boxes_in<Dim>(all_boxes.from(rank))));
+      to.push_back(touching<Dim>(from, boxes_of.from(rank)));
     for (std::size_t rank = 0; rank < ranks; ++rank)
       for (const std::uint32_t e : to[rank]) on_elements.append(element_values[rank], e);
     return Sender<Dim>(from, std::move(to)).lists([&](std::size_t rank, VertexId v) {
@@ -201,15 +169,10 @@ PartWithFields gathered_overlap(const Communicator& comm, const Part& from,
 
 }  // namespace
 
-std::vector<double> boxes_of(const Part& part) {
-  return part.mesh.dimension == 2 ? Boxes<2>(part.mesh).make() : Boxes<3>(part.mesh).make();
-}
-
 PartWithFields gather_overlap(const Communicator& comm, const Part& from,
-                              const std::vector<NamedField>& fields,
-                              const std::vector<double>& boxes) {
-  return from.mesh.dimension == 2 ? gathered_overlap<2>(comm, from, fields, boxes)
-                                  : gathered_overlap<3>(comm, from, fields, boxes);
+                              const std::vector<NamedField>& fields, const Part& to) {
+  return from.mesh.dimension == 2 ? gathered_overlap<2>(comm, from, fields, to)
+                                  : gathered_overlap<3>(comm, from, fields, to);
 }
 
 }  // namespace ductile::distributed

@@ -17,15 +17,10 @@ struct PartWithFields {
   std::vector<meshadapt::NamedField> fields;
 };
 
-/// Boxes around the elements of a part: [box * 2 * dimension + axis], low corners before high ones.
-/// Empty for an empty part.
-std::vector<double> boxes_of(const Part& part);
-
-/// The elements of the parts `from`, with the values of fields there, that intersect the boxes of
-/// this rank. They are in the order of the ranks, vertices in that of their numbers, so the result
-/// is deterministic. Collective.
+/// The elements of the parts `from`, with the values of fields there, that intersect boxes around
+/// the elements of this rank's part `to`. They are in the order of the ranks, vertices in that of
+/// their numbers, so the result is deterministic. Collective.
 PartWithFields gather_overlap(const Communicator& comm, const Part& from,
-                              const std::vector<meshadapt::NamedField>& fields,
-                              const std::vector<double>& boxes);
+                              const std::vector<meshadapt::NamedField>& fields, const Part& to);
 
 }  // namespace ductile::distributed

@@ -22,13 +22,14 @@ std::int64_t take_finer(const Communicator& comm, const Interfaces& interfaces,
   for (const SharedVertex& shared : interfaces.vertices)
     at_shared.push_back(metric_of[shared.vertex]);
   std::int64_t finer = 0;
-  exchange_at_vertices(comm, interfaces, at_shared,
-                       [&](std::size_t i, int, const Metric<Dim>& other) {
-                         Metric<Dim>& metric = metric_of[interfaces.vertices[i].vertex];
-                         const Metric<Dim> both = meshadapt::intersect(metric, other);
-                         finer += determinant(both) > (1 + tolerance) * determinant(metric) ? 1 : 0;
-                         metric = both;
-                       });
+  visit_at_vertices(comm, interfaces, at_shared,
+                    [&](std::size_t i, int rank, const Metric<Dim>* other) {
+                      if (rank == comm.rank()) return;
+                      Metric<Dim>& metric = metric_of[interfaces.vertices[i].vertex];
+                      const Metric<Dim> both = meshadapt::intersect(metric, *other);
+                      finer += determinant(both) > (1 + tolerance) * determinant(metric) ? 1 : 0;
+                      metric = both;
+                    });
   return comm.sum(finer);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -33,25 +34,33 @@ struct Interfaces {
 /// collective.
 Interfaces find_interfaces(const Communicator& comm, const Part& part);
 
-/// Exchanges a value for each shared vertex: calls take(index, rank, value) for each other rank
-/// that has it, in the order of the ranks; index refers to Interfaces::vertices. Collective.
-template <class T, class Take>
-void exchange_at_vertices(const Communicator& comm, const Interfaces& interfaces,
-                          const std::vector<T>& value_of, Take&& take) {
-  PerRank<T> to(static_cast<std::size_t>(comm.size()));
-  PerRank<std::size_t> index(to.size());
+/// Exchanges values of shared vertices: calls visit(index, rank, values) for each vertex and each
+/// rank that has it, this one included, in the order of the ranks. `values` has `each` for a
+/// vertex, in the order of Interfaces::vertices, to which `index` refers. Collective.
+template <class T, class Visit>
+void visit_at_vertices(const Communicator& comm, const Interfaces& interfaces,
+                       const std::vector<T>& values, Visit&& visit, std::size_t each = 1) {
+  const auto to = comm.on_all([&] {
+    PerRank<T> lists(static_cast<std::size_t>(comm.size()));
+    auto own = values.begin();
+    for (const SharedVertex& shared : interfaces.vertices) {
+      const auto end = own + static_cast<std::ptrdiff_t>(each);
+      for (const int rank : shared.ranks) {
+        auto& list = lists[static_cast<std::size_t>(rank)];
+        list.insert(list.end(), own, end);
+      }
+      own = end;
+    }
+    return lists;
+  });
+  const Received<T> received = comm.exchange(to);
+  std::vector<std::size_t> next = received.begin;  // [rank]
   for (std::size_t i = 0; i < interfaces.vertices.size(); ++i)
     for (const int rank : interfaces.vertices[i].ranks) {
-      if (rank == comm.rank()) continue;
-      to[static_cast<std::size_t>(rank)].push_back(value_of[i]);
-      index[static_cast<std::size_t>(rank)].push_back(i);
+      std::size_t& at = next[static_cast<std::size_t>(rank)];
+      visit(i, rank, &received.items[at]);
+      at += each;
     }
-  const Received<T> received = comm.exchange(to);
-  for (int rank = 0; rank < comm.size(); ++rank) {
-    const auto values = received.from(rank);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      take(index[static_cast<std::size_t>(rank)][k], rank, values[k]);
-  }
 }
 
 /// For each key of a list, all ranks that have it, ascending, if other ranks do; otherwise empty.

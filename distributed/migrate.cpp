@@ -74,11 +74,11 @@ std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfa
   std::vector<std::int64_t> number_of_shared;
   for (const SharedVertex& shared : interfaces.vertices)
     number_of_shared.push_back(part.number_of[shared.vertex]);
-  exchange_at_vertices(comm, interfaces, number_of_shared,
-                       [&](std::size_t i, int rank, std::int64_t number) {
-                         const SharedVertex& shared = interfaces.vertices[i];
-                         if (shared.ranks.front() == rank) part.number_of[shared.vertex] = number;
-                       });
+  visit_at_vertices(comm, interfaces, number_of_shared,
+                    [&](std::size_t i, int rank, const std::int64_t* number) {
+                      const SharedVertex& shared = interfaces.vertices[i];
+                      if (shared.ranks.front() == rank) part.number_of[shared.vertex] = *number;
+                    });
   return own;
 }
 

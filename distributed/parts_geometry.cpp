@@ -79,10 +79,10 @@ class BoundaryLayer {
     std::vector<std::uint8_t> of_shared;
     for (const SharedVertex& shared : interfaces_.vertices)
       of_shared.push_back(is_touched_[shared.vertex]);
-    exchange_at_vertices(comm_, interfaces_, of_shared,
-                         [&](std::size_t i, int, std::uint8_t is_touched) {
-                           is_touched_[interfaces_.vertices[i].vertex] |= is_touched;
-                         });
+    visit_at_vertices(comm_, interfaces_, of_shared,
+                      [&](std::size_t i, int, const std::uint8_t* is_touched) {
+                        is_touched_[interfaces_.vertices[i].vertex] |= *is_touched;
+                      });
   }
 
   void drop_elements() {

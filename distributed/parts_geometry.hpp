@@ -8,7 +8,7 @@
 #include "distributed/communicator.hpp"
 #include "distributed/interfaces.hpp"
 #include "distributed/part.hpp"
-#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/runtime/executor.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "distributed/migrate.hpp"
@@ -17,16 +16,13 @@ namespace fs = std::filesystem;
 using meshadapt::NamedField;
 using runtime::Executor;
 
-std::size_t components(const NamedField& field, int dimension) {
-  return static_cast<std::size_t>(component_count(field.type, dimension));
-}
-
 /// Values at the vertices that this rank has numbered, in the order of numbers, or in its elements.
 std::vector<double> own_values(const NamedField& field, const AdaptedParts& parts,
                                std::int64_t first) {
   if (field.place == NamedField::Place::elements) return field.values;
   std::vector<double> values;
-  const std::size_t each = components(field, parts.part.mesh.dimension);
+  const auto each =
+      static_cast<std::size_t>(component_count(field.type, parts.part.mesh.dimension));
   for (std::size_t v = 0; v < parts.part.number_of.size(); ++v) {
     const std::int64_t at = parts.part.number_of[v] - first;
     if (at < 0 || at >= parts.own) continue;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
+#include <span>
+#include <vector>
 
 #include "distributed/gather_overlap.hpp"
 #include "distributed/interfaces.hpp"
@@ -46,40 +47,28 @@ class Joiner {
   void join(std::span<double> values, std::size_t stride, Joining how) {
     has_told_ = true;
     comm_.agree(std::nullopt);
-    const PerRank<double> to = comm_.on_all([&] { return values_to(values, stride); });
-    const Received<double> received = comm_.exchange(to);
+    const std::vector<double> own = comm_.on_all([&] { return at_shared(values, stride); });
+    visit_at_vertices(
+        comm_, interfaces_, own,
+        [&](std::size_t i, int rank, const double* other) {
+          const auto& [vertex, ranks] = interfaces_.vertices[i];
+          combine(values.subspan(vertex * stride, stride), other, rank == ranks.front(), how);
+        },
+        stride);
     has_told_ = false;
-    std::vector<std::size_t> next(received.begin.begin(), received.begin.end() - 1);  // [rank]
-    for (const SharedVertex& shared : interfaces_.vertices) {
-      double* const at = &values[shared.vertex * stride];
-      std::vector<double> own(at, at + stride);
-      bool is_first = true;
-      for (const int rank : shared.ranks) {
-        const double* other = own.data();
-        if (rank != comm_.rank()) {
-          other = &received.items[next[static_cast<std::size_t>(rank)]];
-          next[static_cast<std::size_t>(rank)] += stride;
-        }
-        combine({at, stride}, other, is_first, how);
-        is_first = false;
-      }
-    }
   }
 
   /// Is an exception thrown now thrown on all ranks?
   bool has_told() const { return has_told_; }
 
  private:
-  PerRank<double> values_to(std::span<const double> values, std::size_t stride) const {
-    PerRank<double> to(static_cast<std::size_t>(comm_.size()));
-    for (const SharedVertex& shared : interfaces_.vertices)
-      for (const int rank : shared.ranks) {
-        if (rank == comm_.rank()) continue;
-        const auto at = values.begin() + static_cast<std::ptrdiff_t>(shared.vertex * stride);
-        auto& list = to[static_cast<std::size_t>(rank)];
-        list.insert(list.end(), at, at + static_cast<std::ptrdiff_t>(stride));
-      }
-    return to;
+  std::vector<double> at_shared(std::span<const double> values, std::size_t stride) const {
+    std::vector<double> own;
+    for (const SharedVertex& shared : interfaces_.vertices) {
+      const auto at = values.subspan(shared.vertex * stride, stride);
+      own.insert(own.end(), at.begin(), at.end());
+    }
+    return own;
   }
 
   /// Combines in the order of the ranks, so that all get the same bits.
@@ -124,10 +113,8 @@ std::vector<NamedField> carried(const Communicator& comm, const runtime::Executo
 std::vector<NamedField> transfer_parts(const Communicator& comm, const runtime::Executor& executor,
                                        const FieldsOnPart& from, const Part& to,
                                        const std::vector<meshadapt::Carrying>& carrying) {
-  const PartWithFields around =
-      gather_overlap(comm, from.part, from.fields, comm.on_all([&] { return boxes_of(to); }));
+  const PartWithFields around = gather_overlap(comm, from.part, from.fields, to);
   std::vector<NamedField> fields;
-  const double start = Communicator::processor_seconds();  // includes waiting
   {
     const Busy busy(comm, to);
     const auto failure = failure_of([&] {
@@ -135,7 +122,6 @@ std::vector<NamedField> transfer_parts(const Communicator& comm, const runtime::
         fields =
             carried(*others, executor, around, to.mesh, find_interfaces(*others, to), carrying);
     });
-    comm.add_work(Communicator::processor_seconds() - start);
     comm.agree(failure);
   }
   if (fields.empty())

@@ -4,7 +4,6 @@
 /// nothing leaks to the caller, to OpenMP's threads, or beyond the life of an Executor.
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <vector>
 

@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <memory_resource>
 #include <span>
-#include <vector>
 
 #include "loop.hpp"
 

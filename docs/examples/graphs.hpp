@@ -82,6 +82,18 @@ inline ductile::runtime::CsrRows random_graph(const ductile::runtime::Executor& 
   });
 }
 
+/// A bijection of the integers below 2^bits; ignores higher bits of x. bits is at most 32.
+constexpr std::uint32_t mix_bits(std::uint32_t x, unsigned bits) {
+  const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
+  const unsigned half = (bits + 1) / 2;
+  x &= mask;
+  x ^= x >> half;
+  x = (x * 0x7feb352dU) & mask;
+  x ^= x >> half;
+  x = (x * 0x846ca68bU) & mask;
+  return x ^ x >> half;
+}
+
 /// An RMAT graph (Chakrabarti, Zhan & Faloutsos, SDM 2004) of 2^scale vertices with almost
 /// `edge_count` edges: for each bit of its two ends an edge goes into a quarter of the matrix, by
 /// chances of 0.57, 0.19, 0.19 and 0.05. Vertices are numbered at random.
@@ -94,7 +106,7 @@ inline ductile::runtime::CsrRows rmat_graph(const ductile::runtime::Executor& ex
       a = 2 * a + (share >= 0.76 ? 1 : 0);
       b = 2 * b + ((share >= 0.57 && share < 0.76) || share >= 0.95 ? 1 : 0);
     }
-    return std::pair(ductile::runtime::mix_bits(a, scale), ductile::runtime::mix_bits(b, scale));
+    return std::pair(mix_bits(a, scale), mix_bits(b, scale));
   });
 }
 

@@ -98,13 +98,7 @@ double figure(const AdaptReport& report, std::string_view name) {
        {"held_long_edges", static_cast<double>(report.held_long_edges)},
        {"held_short_edges", static_cast<double>(report.held_short_edges)},
        {"warnings", static_cast<double>(report.warnings.size())}}};
-  std::string names;
-  for (const auto& [known, value] : figures) {
-    if (known == name) return value;
-    names += names.empty() ? "" : ", ";
-    names += known;
-  }
-  throw InputError("figure " + std::string(name) + ": expected one of " + names);
+  return named_in(figures, name, "figure");
 }
 
 /// Returns a handle to the result of adapt(executor), with a warning for each place where the input
@@ -150,11 +144,8 @@ extern "C" {
 
 int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric,
                   const ductile_options* options, ductile_mesh** adapted) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(adapted, "adapted");
-    const ductile_options defaults;
-    const ductile_options& used = options == nullptr ? defaults : *options;
+  return c::guarded({{mesh, "mesh"}, {adapted, "adapted"}}, [&] {
+    const ductile_options& used = c::or_defaults(options);
     const meshadapt::AnyField wanted = c::metric_of(*mesh, components, metric, used);
     const meshadapt::AdaptOptions adapt = c::on_surface(*mesh, used);
     *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
@@ -165,13 +156,9 @@ int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric
 
 int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
                            const ductile_options* options, ductile_mesh** adapted) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(sizes, "sizes");
-    c::expect_given(adapted, "adapted");
+  return c::guarded({{mesh, "mesh"}, {sizes, "sizes"}, {adapted, "adapted"}}, [&] {
     c::expect_dimension_of(*sizes, *mesh);
-    const ductile_options defaults;
-    const ductile_options& used = options == nullptr ? defaults : *options;
+    const ductile_options& used = c::or_defaults(options);
     const meshadapt::AdaptOptions adapt = c::on_surface(*mesh, used);
     *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
       return meshadapt::adapt_to_sizes(executor, mesh->mesh, sizes->sizes, adapt);
@@ -181,9 +168,7 @@ int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
 
 int ductile_move(const ductile_mesh* mesh, const double* displacement, int64_t count,
                  const int32_t* bodies, const ductile_options* options, ductile_mesh** moved) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(displacement, "displacement");
+  return c::guarded({{mesh, "mesh"}, {displacement, "displacement"}}, [&] {
     c::expect_array(bodies, count, "bodies");
     c::expect_given(moved, "moved");
     const meshadapt::AnyMesh& any = mesh->mesh;
@@ -192,16 +177,13 @@ int ductile_move(const ductile_mesh* mesh, const double* displacement, int64_t c
                                     {meshadapt::AnyField::Type::vector},
                                     {displacement, displacement + any.coordinates.size()},
                                     "displacement"};
-    const ductile_options defaults;
-    *moved = c::moved_by(*mesh, field, options == nullptr ? defaults : *options,
-                         {bodies, bodies + count});
+    *moved = c::moved_by(*mesh, field, c::or_defaults(options), {bodies, bodies + count});
   });
 }
 
 int ductile_move_origins(const ductile_mesh* moved, int32_t* vertices, int32_t* facets,
                          int32_t* elements) {
-  return c::guarded([&] {
-    c::expect_given(moved, "moved");
+  return c::guarded({{moved, "moved"}}, [&] {
     const meshadapt::Origins& origins = moved->origins;
     if (origins.vertex.empty())
       throw meshadapt::InputError("moved: expected a mesh from ductile_move(), found another");
@@ -217,23 +199,17 @@ int ductile_move_origins(const ductile_mesh* moved, int32_t* vertices, int32_t* 
 
 int ductile_solution_metric(const ductile_mesh* mesh, int components, const double* values,
                             const ductile_options* options, double* metric) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(values, "values");
-    c::expect_given(options, "options");
-    c::expect_given(metric, "metric");
-    const auto found = meshadapt::solution_metric(runtime::Executor(options->executor), mesh->mesh,
-                                                  c::solution_of(mesh->mesh, components, values),
-                                                  c::goal_of(*options));
-    std::copy(found.metric.values.begin(), found.metric.values.end(), metric);
-  });
+  return c::guarded({{mesh, "mesh"}, {values, "values"}, {options, "options"}, {metric, "metric"}},
+                    [&] {
+                      const auto found = meshadapt::solution_metric(
+                          runtime::Executor(options->executor), mesh->mesh,
+                          c::solution_of(mesh->mesh, components, values), c::goal_of(*options));
+                      std::copy(found.metric.values.begin(), found.metric.values.end(), metric);
+                    });
 }
 
 int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* value) {
-  return c::guarded([&] {
-    c::expect_given(adapted, "adapted");
-    c::expect_given(name, "name");
-    c::expect_given(value, "value");
+  return c::guarded({{adapted, "adapted"}, {name, "name"}, {value, "value"}}, [&] {
     *value = adapted->cut ? c::cut_figure(adapted->cut->made.report, name)
                           : c::figure(adapted->report, name);
   });

@@ -7,10 +7,8 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/signed_distance.hpp"
@@ -69,22 +67,16 @@ extern "C" {
 
 int ductile_options_set_surface(ductile_options* options, int32_t reference,
                                 ductile_surface surface, void* context) {
-  return c::guarded([&] {
-    c::expect_given(options, "options");
+  return c::guarded({{options, "options"}}, [&] {
     auto& functions = options->adapt.make.functions;
-    functions.erase(std::remove_if(functions.begin(), functions.end(),
-                                   [&](const auto& f) { return f.reference == reference; }),
-                    functions.end());
+    std::erase_if(functions, [&](const auto& f) { return f.reference == reference; });
     if (surface != nullptr) functions.push_back(c::function_of(reference, surface, context));
   });
 }
 
 int ductile_geometry_create(const ductile_mesh* mesh, const ductile_options* options,
                             ductile_geometry** geometry) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(options, "options");
-    c::expect_given(geometry, "geometry");
+  return c::guarded({{mesh, "mesh"}, {options, "options"}, {geometry, "geometry"}}, [&] {
     const auto& make = options->adapt.make;
     const runtime::Executor executor(options->executor);
     auto made = std::make_unique<ductile_geometry>();
@@ -102,8 +94,7 @@ int ductile_geometry_create(const ductile_mesh* mesh, const ductile_options* opt
 void ductile_geometry_destroy(ductile_geometry* geometry) { delete geometry; }
 
 int ductile_options_set_geometry(ductile_options* options, const ductile_geometry* geometry) {
-  return c::guarded([&] {
-    c::expect_given(options, "options");
+  return c::guarded({{options, "options"}}, [&] {
     auto& make = options->adapt.make;
     make.geometry = geometry == nullptr ? nullptr : geometry->geometry;
     if (geometry == nullptr) return;
@@ -114,8 +105,7 @@ int ductile_options_set_geometry(ductile_options* options, const ductile_geometr
 
 int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
                              double reach, double* closest, double* normals, int32_t* references) {
-  return c::guarded([&] {
-    c::expect_given(geometry, "geometry");
+  return c::guarded({{geometry, "geometry"}}, [&] {
     c::expect_array(points, count, "points");
     c::expect_array(closest, count, "closest");
     const auto n =
@@ -134,8 +124,7 @@ int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, co
 int ductile_signed_distance(const ductile_mesh* mesh, const ductile_options* options,
                             int64_t reference_count, const int32_t* references, int64_t count,
                             const double* points, double* distances) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{mesh, "mesh"}}, [&] {
     c::expect_array(references, reference_count, "references");
     c::expect_array(distances, count, "distances");
     const meshadapt::AnyMesh& any = mesh->mesh;
@@ -145,8 +134,7 @@ int ductile_signed_distance(const ductile_mesh* mesh, const ductile_options* opt
                                   ", because there are no "
                                   "points; found " +
                                   std::to_string(count));
-    const ductile_options defaults{};
-    const ductile_options& given = options != nullptr ? *options : defaults;
+    const ductile_options& given = c::or_defaults(options);
     const auto values = static_cast<std::size_t>(count * any.dimension);
     const std::span<const double> at(points, points != nullptr ? values : 0);
     const auto found =

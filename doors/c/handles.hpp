@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <new>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "ductile.h"
 #include "ductile/meshadapt/adapt.hpp"
@@ -54,10 +55,23 @@ void keep_wrong_input(const char* text) noexcept;
 /// The number with six digits.
 std::string number(double value);
 
-/// Calls work() and turns its exceptions into a code.
+/// Throws InputError if the pointer is null.
+inline void expect_given(const void* pointer, const char* name) {
+  if (pointer == nullptr)
+    throw meshadapt::InputError(std::string(name) + ": expected a pointer, found NULL");
+}
+
+/// A pointer that must not be null, and its name in messages.
+struct Needed {
+  const void* pointer;
+  const char* name;
+};
+
+/// Calls work() if no needed pointer is null, and turns exceptions into a code.
 template <class Work>
-int guarded(Work&& work) noexcept {
+int guarded(std::initializer_list<Needed> needed, Work&& work) noexcept {
   try {
+    for (const auto& [pointer, name] : needed) expect_given(pointer, name);
     work();
     return DUCTILE_OK;
   } catch (const meshadapt::InputError& error) {
@@ -73,10 +87,22 @@ int guarded(Work&& work) noexcept {
   return DUCTILE_FAILED;
 }
 
-/// Throws InputError if the pointer is null.
-inline void expect_given(const void* pointer, const char* name) {
-  if (pointer == nullptr)
-    throw meshadapt::InputError(std::string(name) + ": expected a pointer, found NULL");
+/// The value of the pair in `table` with this name. Throws InputError, which begins with `what`.
+template <class Table>
+const auto& named_in(const Table& table, std::string_view name, const std::string& what) {
+  std::string names;
+  for (const auto& [known, value] : table) {
+    if (known == name) return value;
+    names += names.empty() ? "" : ", ";
+    names += known;
+  }
+  throw meshadapt::InputError(what + " " + std::string(name) + ": expected one of " + names);
+}
+
+/// The given options, or the defaults.
+inline const ductile_options& or_defaults(const ductile_options* options) {
+  static const ductile_options defaults;
+  return options == nullptr ? defaults : *options;
 }
 
 /// Throws InputError if the count is below 0, or if the array is null although the count is not 0.

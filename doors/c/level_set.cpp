@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "ductile/meshadapt/level_set_function.hpp"
@@ -31,20 +32,15 @@ meshadapt::AdaptOptions on_surface(const ductile_mesh& mesh, const ductile_optio
   return adapt;
 }
 
-double cut_figure(const meshadapt::CutReport& report, const std::string& name) {
-  const std::array<std::pair<const char*, double>, 6> figures{
+double cut_figure(const meshadapt::CutReport& report, std::string_view name) {
+  const std::array<std::pair<std::string_view, double>, 6> figures{
       {{"level", report.level},
        {"volume_below", report.minus_volume},
        {"cut_elements", static_cast<double>(report.cut_elements)},
        {"moved_vertices", static_cast<double>(report.moved_vertices)},
        {"removed_components", static_cast<double>(report.removed_components)},
        {"warnings", static_cast<double>(report.warnings.size())}}};
-  std::string names;
-  for (const auto& [known, value] : figures) {
-    if (name == known) return value;
-    names += (names.empty() ? "" : ", ") + std::string(known);
-  }
-  throw meshadapt::InputError("figure " + name + ": expected one of " + names);
+  return named_in(figures, name, "figure");
 }
 
 namespace {
@@ -73,8 +69,7 @@ extern "C" {
 
 int ductile_options_set_material(ductile_options* options, int32_t reference, int split,
                                  int32_t minus, int32_t plus) {
-  return c::guarded([&] {
-    c::expect_given(options, "options");
+  return c::guarded({{options, "options"}}, [&] {
     if (split != 0 && split != 1)
       throw meshadapt::InputError("split: expected 0 or 1, found " + std::to_string(split));
     auto& materials = options->cut.materials;
@@ -85,12 +80,8 @@ int ductile_options_set_material(ductile_options* options, int32_t reference, in
 
 int ductile_cut(const ductile_mesh* mesh, const double* values, const ductile_options* options,
                 ductile_mesh** cut) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(values, "values");
-    c::expect_given(cut, "cut");
-    const ductile_options defaults;
-    const ductile_options& used = options == nullptr ? defaults : *options;
+  return c::guarded({{mesh, "mesh"}, {values, "values"}, {cut, "cut"}}, [&] {
+    const ductile_options& used = c::or_defaults(options);
     const meshadapt::AnyMesh& before = mesh->mesh;
     auto kept = std::make_shared<c::Cut>(
         c::Cut{before, {values, values + before.vertex_count()}, used.cut.interface, {}});
@@ -108,8 +99,7 @@ int ductile_cut(const ductile_mesh* mesh, const double* values, const ductile_op
 
 int ductile_cut_origins(const ductile_mesh* cut, int32_t* vertices, double* weights,
                         int32_t* elements) {
-  return c::guarded([&] {
-    c::expect_given(cut, "cut");
+  return c::guarded({{cut, "cut"}}, [&] {
     if (!cut->cut)
       throw meshadapt::InputError("cut: expected a mesh from ductile_cut(), found another");
     c::write_origins(cut->cut->made, vertices, weights, elements);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "handles.hpp"
@@ -25,6 +25,6 @@ meshadapt::AnyField metric_before(const runtime::Executor& executor, const Cut& 
 /// interface of a cut mesh is put on the surface of its level set.
 meshadapt::AdaptOptions on_surface(const ductile_mesh& mesh, const ductile_options& options);
 
-double cut_figure(const meshadapt::CutReport& report, const std::string& name);
+double cut_figure(const meshadapt::CutReport& report, std::string_view name);
 
 }  // namespace ductile::c

@@ -75,16 +75,14 @@ void replace(ductile_mesh& handle, AnyMesh&& mesh) {
 
 template <class Index>
 int set_elements(ductile_mesh* handle, const GivenCells<Index>& given) {
-  return guarded([&] {
-    expect_given(handle, "mesh");
+  return guarded({{handle, "mesh"}}, [&] {
     replace(*handle, with_cells(handle->mesh, given, handle->mesh.dimension + 1));
   });
 }
 
 template <class Index>
 int set_facets(ductile_mesh* handle, const GivenCells<Index>& given) {
-  return guarded([&] {
-    expect_given(handle, "mesh");
+  return guarded({{handle, "mesh"}}, [&] {
     AnyMesh mesh = handle->mesh;
     AnyMesh listed = with_cells(mesh, given, mesh.dimension);
     if (mesh.dimension == 2) {
@@ -195,8 +193,7 @@ const char* ductile_version() { return DUCTILE_VERSION; }
 const char* ductile_last_error() { return c::last_error.c_str(); }
 
 int ductile_mesh_create(int dimension, ductile_mesh** mesh) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{mesh, "mesh"}}, [&] {
     c::expect_dimension(dimension);
     auto made = std::make_unique<ductile_mesh>();
     made->mesh.dimension = dimension;
@@ -206,8 +203,7 @@ int ductile_mesh_create(int dimension, ductile_mesh** mesh) {
 
 int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
                               const int32_t* reference) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{mesh, "mesh"}}, [&] {
     c::expect_array(coordinates, count, "coordinates");
     c::expect_count(count, "coordinates");
     const c::MeshArrays<int32_t> arrays{
@@ -240,8 +236,7 @@ int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t*
 }
 
 int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int32_t* indices) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{mesh, "mesh"}}, [&] {
     c::expect_array(indices, count, "indices");
     std::size_t entities = 0;
     std::vector<std::uint32_t>& required = c::required_of(mesh->mesh, kind, entities);
@@ -255,8 +250,7 @@ int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int3
 }
 
 int ductile_mesh_join_vertices(ductile_mesh* mesh, double distance, int32_t* kept) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{mesh, "mesh"}}, [&] {
     auto joined = meshadapt::join_vertices(mesh->mesh, distance);
     if (kept != nullptr) std::copy(joined.kept.begin(), joined.kept.end(), kept);
     *mesh = {std::move(joined.mesh), {}, {}};
@@ -264,8 +258,7 @@ int ductile_mesh_join_vertices(ductile_mesh* mesh, double distance, int32_t* kep
 }
 
 int ductile_mesh_set_name(ductile_mesh* mesh, int kind, int32_t reference, const char* name) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{mesh, "mesh"}}, [&] {
     const int dimension = c::dimension_of(kind, mesh->mesh.dimension);
     auto names = mesh->mesh.names;
     const auto found = c::find_name(names, dimension, reference);
@@ -301,9 +294,7 @@ const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
 }
 
 int ductile_mesh_read(const char* path, ductile_mesh** mesh) {
-  return c::guarded([&] {
-    c::expect_given(path, "path");
-    c::expect_given(mesh, "mesh");
+  return c::guarded({{path, "path"}, {mesh, "mesh"}}, [&] {
     auto read = std::make_unique<ductile_mesh>();
     read->mesh = meshadapt::read_mesh(path);
     meshadapt::list_boundary(runtime::Executor(), read->mesh);
@@ -312,9 +303,7 @@ int ductile_mesh_read(const char* path, ductile_mesh** mesh) {
 }
 
 int ductile_mesh_write(const ductile_mesh* mesh, const char* path) {
-  return c::guarded([&] {
-    c::expect_given(mesh, "mesh");
-    c::expect_given(path, "path");
+  return c::guarded({{mesh, "mesh"}, {path, "path"}}, [&] {
     const std::filesystem::path file(path);
     const auto* const format = meshadapt::format_of(file);
     std::vector<meshadapt::NamedField> fields;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "handles.hpp"
 
@@ -37,16 +38,12 @@ std::size_t megabytes(const std::string& name, double value) {
   return static_cast<std::size_t>(whole(name, value, 0, 1 << 30)) << 20U;
 }
 
-/// One option: its name and how it is set.
-struct Named {
-  std::string_view name;
-  void (*set)(ductile_options& options, const std::string& name, double value);
-};
-
 using Options = ductile_options;
 using Text = std::string;
 
-constexpr std::array<Named, 26> all_options{{
+using Set = void (*)(Options& options, const Text& name, double value);
+
+constexpr std::array<std::pair<std::string_view, Set>, 26> all_options{{
     {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
@@ -79,15 +76,6 @@ constexpr std::array<Named, 26> all_options{{
     {"racing", [](Options& o, const Text& n, double x) { o.executor.deterministic = !flag(n, x); }},
 }};
 
-std::string all_names() {
-  std::string names;
-  for (const Named& option : all_options) {
-    if (!names.empty()) names += ", ";
-    names += option.name;
-  }
-  return names;
-}
-
 }  // namespace
 }  // namespace ductile::c
 
@@ -96,29 +84,20 @@ using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 extern "C" {
 
 int ductile_options_create(ductile_options** options) {
-  return c::guarded([&] {
-    c::expect_given(options, "options");
-    *options = std::make_unique<ductile_options>().release();
-  });
+  return c::guarded({{options, "options"}},
+                    [&] { *options = std::make_unique<ductile_options>().release(); });
 }
 
 void ductile_options_destroy(ductile_options* options) { delete options; }
 
 int ductile_options_set(ductile_options* options, const char* name, double value) {
-  return c::guarded([&] {
-    c::expect_given(options, "options");
-    c::expect_given(name, "name");
-    for (const c::Named& option : c::all_options)
-      if (option.name == name) return option.set(*options, name, value);
-    throw meshadapt::InputError("option " + std::string(name) + ": expected one of " +
-                                c::all_names());
-  });
+  return c::guarded({{options, "options"}, {name, "name"}},
+                    [&] { c::named_in(c::all_options, name, "option")(*options, name, value); });
 }
 
 int ductile_options_set_progress(ductile_options* options, ductile_progress progress,
                                  void* context) {
-  return c::guarded([&] {
-    c::expect_given(options, "options");
+  return c::guarded({{options, "options"}}, [&] {
     options->adapt.progress = {};
     if (progress == nullptr) return;
     options->adapt.progress = [progress, context](const meshadapt::AdaptProgress& now) {

@@ -19,27 +19,15 @@ namespace {
 using meshadapt::InputError;
 using meshadapt::Vector;
 
-struct NamedNumber {
-  std::string_view name;
-  double& (*of)(ductile_sizes& sizes);
-};
-constexpr std::array<NamedNumber, 6> all_numbers{
+using Number = double& (*)(ductile_sizes& sizes);
+
+constexpr std::array<std::pair<std::string_view, Number>, 6> all_numbers{
     {{"default", [](ductile_sizes& s) -> double& { return s.sizes.elsewhere; }},
      {"hmin", [](ductile_sizes& s) -> double& { return s.sizes.bounds.smallest; }},
      {"hmax", [](ductile_sizes& s) -> double& { return s.sizes.bounds.largest; }},
      {"grow", [](ductile_sizes& s) -> double& { return s.growth.grow; }},
      {"largest", [](ductile_sizes& s) -> double& { return s.growth.largest; }},
      {"distance", [](ductile_sizes& s) -> double& { return s.growth.distance; }}}};
-
-double& number_of(ductile_sizes& sizes, std::string_view name) {
-  std::string names;
-  for (const NamedNumber& number : all_numbers) {
-    if (number.name == name) return number.of(sizes);
-    names += names.empty() ? "" : ", ";
-    names += number.name;
-  }
-  throw InputError("sizes: expected one of " + names + ", found " + std::string(name));
-}
 
 /// Points from their coordinates; in 2D the third coordinate is 0.
 std::vector<Vector<3>> points_of(const double* coordinates, std::int64_t count, int dimension) {
@@ -52,8 +40,7 @@ std::vector<Vector<3>> points_of(const double* coordinates, std::int64_t count, 
 /// Adds the place that place(dimension) returns.
 template <class Place>
 int add(ductile_sizes* sizes, double size, Place&& place) {
-  return guarded([&] {
-    expect_given(sizes, "sizes");
+  return guarded({{sizes, "sizes"}}, [&] {
     auto& sources = sizes->sizes.sources;
     sources.push_back({place(sizes->dimension), size, sizes->growth,
                        "places[" + std::to_string(sources.size()) + "]"});
@@ -68,8 +55,7 @@ using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 extern "C" {
 
 int ductile_sizes_create(int dimension, ductile_sizes** sizes) {
-  return c::guarded([&] {
-    c::expect_given(sizes, "sizes");
+  return c::guarded({{sizes, "sizes"}}, [&] {
     c::expect_dimension(dimension);
     *sizes = std::make_unique<ductile_sizes>(ductile_sizes{dimension, {}, {}}).release();
   });
@@ -78,15 +64,13 @@ int ductile_sizes_create(int dimension, ductile_sizes** sizes) {
 void ductile_sizes_destroy(ductile_sizes* sizes) { delete sizes; }
 
 int ductile_sizes_set(ductile_sizes* sizes, const char* name, double value) {
-  return c::guarded([&] {
-    c::expect_given(sizes, "sizes");
-    c::expect_given(name, "name");
+  return c::guarded({{sizes, "sizes"}, {name, "name"}}, [&] {
     const bool is_size =
         value == 0 || (value >= meshadapt::smallest_size && value <= meshadapt::largest_size);
     if (std::string_view(name) == "default" && !is_size)
       throw meshadapt::InputError("default: expected a size from 1e-75 to 1e75, or 0, found " +
                                   c::number(value));
-    c::number_of(*sizes, name) = value;
+    c::named_in(c::all_numbers, name, "sizes")(*sizes) = value;
   });
 }
 
@@ -143,10 +127,7 @@ int ductile_sizes_on_name(ductile_sizes* sizes, const char* name, double size) {
 }
 
 int ductile_sizes_at(const ductile_sizes* sizes, const ductile_mesh* mesh, double* values) {
-  return c::guarded([&] {
-    c::expect_given(sizes, "sizes");
-    c::expect_given(mesh, "mesh");
-    c::expect_given(values, "values");
+  return c::guarded({{sizes, "sizes"}, {mesh, "mesh"}, {values, "values"}}, [&] {
     c::expect_dimension_of(*sizes, *mesh);
     const auto found = meshadapt::size_field(runtime::Executor(), mesh->mesh, sizes->sizes);
     std::copy(found.values.begin(), found.values.end(), values);

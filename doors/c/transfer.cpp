@@ -69,10 +69,7 @@ extern "C" {
 
 int ductile_transfer_create(const ductile_mesh* before, const ductile_mesh* after,
                             ductile_transfer** transfer) {
-  return c::guarded([&] {
-    c::expect_given(before, "before");
-    c::expect_given(after, "after");
-    c::expect_given(transfer, "transfer");
+  return c::guarded({{before, "before"}, {after, "after"}, {transfer, "transfer"}}, [&] {
     *transfer =
         std::make_unique<ductile_transfer>(
             ductile_transfer{*before, *after,
@@ -104,10 +101,7 @@ const double* ductile_transfer_weights(const ductile_transfer* transfer) {
 
 int ductile_transfer_carry(const ductile_transfer* transfer, int how, int components,
                            const double* values, double* result) {
-  return c::guarded([&] {
-    c::expect_given(transfer, "transfer");
-    c::expect_given(values, "values");
-    c::expect_given(result, "result");
+  return c::guarded({{transfer, "transfer"}, {values, "values"}, {result, "result"}}, [&] {
     if (components < 1)
       throw meshadapt::InputError("components: expected 1 or more, found " +
                                   std::to_string(components));

@@ -1,7 +1,6 @@
 #include "metric.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "distributed/adapt_part.hpp"
@@ -83,17 +82,13 @@ AnyField agreed(const Communicator& comm, const runtime::Executor& executor, con
   for (const SharedVertex& shared : interfaces.vertices)
     own.push_back({meshadapt::logarithm(tensor_of[shared.vertex]), factor_of[shared.vertex], 1});
   // Summed in the order of ranks, so that all get the same result.
-  std::vector<std::vector<std::pair<int, AtVertex>>> all(own.size());
-  for (std::size_t i = 0; i < own.size(); ++i) all[i].emplace_back(comm.rank(), own[i]);
-  exchange_at_vertices(comm, interfaces, own, [&](std::size_t i, int rank, const AtVertex& other) {
-    all[i].emplace_back(rank, other);
+  std::vector<AtVertex> sum_of(own.size(), {{}, 2, 0});
+  visit_at_vertices(comm, interfaces, own, [&](std::size_t i, int, const AtVertex* one) {
+    AtVertex& sum = sum_of[i];
+    sum = {sum.logarithm + one->logarithm, std::min(sum.factor, one->factor), sum.count + 1};
   });
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    std::sort(all[i].begin(), all[i].end(),
-              [](const auto& a, const auto& b) { return a.first < b.first; });
-    AtVertex sum{{}, 2, 0};
-    for (const auto& [rank, one] : all[i])
-      sum = {sum.logarithm + one.logarithm, std::min(sum.factor, one.factor), sum.count + 1};
+  for (std::size_t i = 0; i < sum_of.size(); ++i) {
+    const AtVertex& sum = sum_of[i];
     const VertexId v = interfaces.vertices[i].vertex;
     tensor_of[v] = meshadapt::exponential((1 / sum.count) * sum.logarithm);
     factor_of[v] = sum.factor;

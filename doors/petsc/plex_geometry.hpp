@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "distributed/communicator.hpp"
-#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "plex.hpp"

@@ -30,20 +30,7 @@ ColouringMethod choose(const Executor& executor, ColouringMethod method, std::si
                                                  method == ColouringMethod::two_phase);
   const bool few =
       vertex_count < (method == ColouringMethod::automatic ? many_vertices : few_vertices);
-  return alone || (few && method != ColouringMethod::largest_first) ? ColouringMethod::serial
-                                                                    : method;
-}
-
-std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
-                    std::span<std::uint32_t> colour_of) {
-  return greatest(executor, bytes.size(), [&](std::size_t begin, std::size_t end) {
-    std::uint8_t most = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      most = std::max(most, bytes[i]);
-      colour_of[i] = bytes[i];
-    }
-    return std::uint32_t{most} + 1;
-  });
+  return alone || few ? ColouringMethod::serial : method;
 }
 
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint8_t> bytes) {

@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "program.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::cli::adapt_command_test {
 namespace {
@@ -39,6 +40,7 @@ TEST(AdaptCommand, WritesBinaryForBinary) {
 }
 
 TEST(AdaptCommand, DoesNotDependOnThreads) {
+  if (meshadapt::test::address_sanitized) GTEST_SKIP();
   const Folder folder;
   folder.add_example("waves3d");
   for (const char* threads : {"1", "2", "4"})

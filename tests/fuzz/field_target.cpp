@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "oracle.hpp"
+#include "targets.hpp"
 
 namespace ductile::fuzz {
 namespace {
@@ -69,25 +70,22 @@ void use_as_metric(const AnyField& field) {
 }
 
 }  // namespace
-}  // namespace ductile::fuzz
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  using namespace ductile;
-  static fuzz::MemoryFile file;
-  if (size == 0) return 0;
+void try_field(std::string_view, const std::uint8_t* bytes, std::size_t size) {
+  static MemoryFile file;
   file.set(bytes, size);
   meshadapt::Warnings warnings;
   try {
-    const meshadapt::AnyField field = meshadapt::read_field(file.path(), &warnings);
-    fuzz::expect_messages(warnings);
-    fuzz::expect_whole(field);
-    fuzz::expect_round_trip(field, size + bytes[size / 2]);
-    fuzz::use_as_metric(field);
+    const AnyField field = meshadapt::read_field(file.path(), &warnings);
+    expect_messages(warnings);
+    expect_whole(field);
+    expect_round_trip(field, size + bytes[size / 2]);
+    use_as_metric(field);
     for (const auto& one : meshadapt::named_fields(field, "x"))
-      fuzz::expect(!one.name.empty(), "a field without a name");
+      expect(!one.name.empty(), "a field without a name");
   } catch (const meshadapt::InputError& error) {
-    fuzz::expect_message_of(file.path(), error.what());
+    expect_message_of(file.path(), error.what());
   }
-  return 0;
 }
+
+}  // namespace ductile::fuzz

@@ -1,6 +1,6 @@
-// Any bytes as a mesh file for one reader of the table of formats, chosen by DUCTILE_FUZZED: the
-// file is read, or refused by a message. A mesh that is read must survive writing and reading in
-// each of the formats, is checked, and becomes a Mesh if it can be adapted.
+// Any bytes as a mesh file for one reader of the table of formats: the file is read, or refused by
+// a message. A mesh that is read must survive writing and reading in each of the formats, is
+// checked, and becomes a Mesh if it can be adapted.
 
 #include <algorithm>
 #include <array>
@@ -16,6 +16,7 @@
 #include "geometry/surface_mesh.hpp"
 #include "io/formats.hpp"
 #include "oracle.hpp"
+#include "targets.hpp"
 
 namespace ductile::fuzz {
 namespace {
@@ -158,37 +159,27 @@ void use(const AnyMesh& mesh) {
     make<3>(mesh);
 }
 
-const meshadapt::FormatRow& fuzzed_row() {
-  for (const meshadapt::FormatRow& row : meshadapt::format_rows())
-    if (row.ending == DUCTILE_FUZZED) return row;
-  fail("no format " DUCTILE_FUZZED);
-}
-
-/// Uses the reader of the chosen format whatever the bytes begin with.
-AnyMesh read(const MemoryFile& file, meshadapt::Warnings& warnings) {
-  return fuzzed_row().read(meshadapt::read_bytes(file.path()), &warnings).mesh;
-}
-
 }  // namespace
-}  // namespace ductile::fuzz
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  using namespace ductile;
-  static fuzz::MemoryFile file;
-  if (size == 0) return 0;
+void try_mesh(std::string_view format, const std::uint8_t* bytes, std::size_t size) {
+  static MemoryFile file;
+  const auto rows = meshadapt::format_rows();
+  const auto row = std::find_if(rows.begin(), rows.end(),
+                                [&](const auto& one) { return one.ending.substr(1) == format; });
+  if (row == rows.end()) fail("no format " + std::string(format));
   file.set(bytes, size);
   meshadapt::Warnings warnings;
-  try {
-    const meshadapt::AnyMesh mesh = fuzz::read(file, warnings);
-    fuzz::expect_messages(warnings);
+  try {  // this reader, whatever the bytes begin with
+    const AnyMesh mesh = row->read(meshadapt::read_bytes(file.path()), &warnings).mesh;
+    expect_messages(warnings);
     const std::string_view text(reinterpret_cast<const char*>(bytes), size);
-    fuzz::expect_whole(mesh, size, text.find("ZLib") != std::string_view::npos);
-    fuzz::expect_round_trip(mesh, size + bytes[size / 2]);
-    fuzz::expect_round_trip_in_space(mesh, size + bytes[size / 2]);
-    fuzz::use(mesh);
+    expect_whole(mesh, size, text.find("ZLib") != std::string_view::npos);
+    expect_round_trip(mesh, size + bytes[size / 2]);
+    expect_round_trip_in_space(mesh, size + bytes[size / 2]);
+    use(mesh);
   } catch (const meshadapt::InputError& error) {
-    fuzz::expect_message_of(file.path(), error.what());
+    expect_message_of(file.path(), error.what());
   }
-  return 0;
 }
+
+}  // namespace ductile::fuzz

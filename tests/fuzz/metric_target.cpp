@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "oracle.hpp"
+#include "targets.hpp"
 
 namespace ductile::fuzz {
 namespace {
@@ -162,18 +163,15 @@ void use(Numbers& numbers, const AnyMesh& mesh, const AnyField& field) {
 }
 
 }  // namespace
-}  // namespace ductile::fuzz
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  using namespace ductile::fuzz;
-  if (size == 0) return 0;
+void try_metric(std::string_view, const std::uint8_t* bytes, std::size_t size) {
   Numbers numbers(bytes, size);
-  const ductile::meshadapt::AnyMesh mesh = small_mesh(numbers);
-  const ductile::meshadapt::AnyField field = some_field(numbers, mesh);
+  const AnyMesh mesh = small_mesh(numbers);
+  const AnyField field = some_field(numbers, mesh);
   if (mesh.dimension == 2)
     use<2>(numbers, mesh, field);
   else
     use<3>(numbers, mesh, field);
-  return 0;
 }
+
+}  // namespace ductile::fuzz

@@ -1,5 +1,5 @@
 // Replaces libFuzzer in builds without it: tries the named files, and a number of damaged copies of
-// each, the same in every run. replay COPIES FILE...
+// each, the same in every run. fuzz --as=NAME COPIES FILE...
 
 #include <cstdint>
 #include <cstdio>
@@ -10,8 +10,22 @@
 #include <string>
 #include <vector>
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
+// NOLINTBEGIN(readability-identifier-naming): the names are libFuzzer's.
+extern "C" int LLVMFuzzerInitialize(const int* count, char*** words);
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
+// NOLINTEND(readability-identifier-naming)
+
+// Ends the program at a request out of all proportion to files of a kilobyte, as libFuzzer does.
+void* operator new(std::size_t size) {
+  void* memory = size > 16U << 20U ? nullptr : std::malloc(size == 0 ? 1 : size);
+  if (memory == nullptr) {
+    std::fprintf(stderr, "fuzz: a request for %zu bytes of memory\n", size);
+    std::abort();
+  }
+  return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -53,20 +67,21 @@ Bytes damaged(Bytes bytes, std::mt19937_64& random) {
 }  // namespace
 
 int main(int count, char** words) {
-  if (count < 3) {
-    std::fputs("replay COPIES FILE...\n", stderr);
+  if (count < 4) {
+    std::fputs("fuzz --as=NAME COPIES FILE...\n", stderr);
     return 2;
   }
-  const long copies = std::strtol(words[1], nullptr, 10);
+  LLVMFuzzerInitialize(&count, &words);
+  const long copies = std::strtol(words[2], nullptr, 10);
   long tried = 0;
-  for (int i = 2; i < count; ++i) {
+  for (int i = 3; i < count; ++i) {
     std::ifstream file(words[i], std::ios::binary);
     const Bytes bytes{std::istreambuf_iterator<char>(file), {}};
     if (bytes.empty()) {
-      std::fprintf(stderr, "replay: nothing to read in %s\n", words[i]);
+      std::fprintf(stderr, "fuzz: nothing to read in %s\n", words[i]);
       return 2;
     }
-    std::mt19937_64 random(static_cast<std::uint64_t>(i));
+    std::mt19937_64 random(static_cast<std::uint64_t>(i - 1));
     try_bytes(bytes);
     for (long copy = 0; copy < copies; ++copy) try_bytes(damaged(bytes, random));
     tried += 1 + copies;

@@ -21,6 +21,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::curved_boundary_test {
 namespace {
@@ -234,6 +235,7 @@ double vertices_off(const AnyMesh& mesh, std::int32_t reference, double radius) 
 
 /// Each call adapts the result of the previous one, to sizes that are small elsewhere.
 TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
+  if (test::sanitized) GTEST_SKIP();
   constexpr double tolerance = 4e-3;
   constexpr int calls = 10;
   const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 14, 1.5);
@@ -267,6 +269,7 @@ TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
 }
 
 TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
+  if (test::address_sanitized) GTEST_SKIP();
   const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 50 : 12, 2);
   test::Random random(3);
   AnyField metric = test::layer_field(mesh, random, 0.2);
@@ -274,7 +277,7 @@ TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
   AdaptOptions options;
   options.make.hausdorff_tolerance = 0.02;
   const AdaptedMesh first = adapt(Executor({.threads = 1}), mesh, metric, options);
-  for (const int threads : {1, 2, 3, 4, 8}) {
+  for (const int threads : test::thread_counts) {
     const AdaptedMesh other = adapt(Executor({.threads = threads}), mesh, metric, options);
     EXPECT_EQ(test::bits(first.mesh.coordinates), test::bits(other.mesh.coordinates));
     EXPECT_EQ(first.mesh.edges.vertices, other.mesh.edges.vertices);
@@ -356,7 +359,7 @@ AnyMesh shell(int n, double thickness, bool is_bowl) {
 TEST(CurvedBoundaries, OfThinShellsAreCoarsened) {
   test::Random random(56);
   const Executor executor({.threads = 2});
-  for (int trial = 0; trial < 4; ++trial) {
+  for (int trial = 0; trial < (test::sanitized ? 1 : 4); ++trial) {
     const double thickness = test::uniform(random, 0.015, 0.03);
     const AnyMesh mesh = shell(30, thickness, trial % 2 == 1);
     AdaptOptions options;
@@ -373,6 +376,7 @@ TEST(CurvedBoundaries, OfThinShellsAreCoarsened) {
 /// The shells are thinner than a few tolerances, and the chords of their facets are about as far
 /// off.
 TEST(CurvedBoundaries, OfThinShellsLoseNothingInManyCalls) {
+  if (test::sanitized) GTEST_SKIP();
   test::Random random(55);
   const Executor executor({.threads = 2});
   for (int trial = 0; trial < 6; ++trial) {

@@ -96,7 +96,7 @@ TYPED_TEST(Cut, TheSameBytesAtAnyNumberOfThreads) {
     if (keeps_volume) c.options.keep_volume = 0.2;
     const CutMesh expected = cut(Executor({.threads = 1}), c.mesh, c.values, c.options);
     EXPECT_GT(expected.report.moved_vertices, 10U);
-    for (const int threads : {2, 3, 4, 8}) {
+    for (const int threads : test::thread_counts) {
       const CutMesh made = cut(Executor({.threads = threads}), c.mesh, c.values, c.options);
       expect_same_bytes(made, expected);
       EXPECT_EQ(made.report.level, expected.report.level);

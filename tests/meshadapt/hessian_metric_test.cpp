@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::hessian_metric_test {
 namespace {
@@ -335,6 +336,7 @@ TYPED_TEST(HessianMetricIn, ReachesAComplexityWithAnyGradationOfAnyField) {
 }
 
 TYPED_TEST(HessianMetricIn, DoesNotDependOnThreads) {
+  if (test::address_sanitized) GTEST_SKIP();
   constexpr int Dim = TypeParam::value;
   const AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 50 : 14));
   const auto run = [&](int threads) {

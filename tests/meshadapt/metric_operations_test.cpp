@@ -15,6 +15,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "geometry/make_mesh.hpp"
 #include "metric/mesh_gradation.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::metric_operations_test {
 namespace {
@@ -386,7 +387,7 @@ TYPED_TEST(MetricOperations, GradationIsTheSameAtEachThreadCount) {
   const auto start = spots<Dim>(mesh.vertex_slots(), 11, 100);
   auto one = start;
   const GradationReport report = limit_gradation(Executor({.threads = 1}), one, mesh);
-  for (const int threads : {2, 3, 4, 8}) {
+  for (const int threads : test::thread_counts) {
     auto many = start;
     const GradationReport again = limit_gradation(Executor({.threads = threads}), many, mesh);
     EXPECT_EQ(many, one);

@@ -10,6 +10,7 @@
 #include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::metric_path_test {
 namespace {
@@ -121,7 +122,7 @@ TYPED_TEST(MetricPathIn, DoesNotDependOnThreads) {
   constexpr int Dim = TypeParam::value;
   Scene<Dim> one(1, 50);
   auto path = one.path(true);
-  for (const int threads : {2, 3, 4, 8}) {
+  for (const int threads : test::thread_counts) {
     Scene<Dim> many(threads, 50);
     auto other = many.path(true);
     ASSERT_EQ(other.steps(), path.steps());

@@ -98,7 +98,7 @@ TYPED_TEST(MetricRangeIn, WhateverAdaptReturnsItTakesAgain) {
   std::filesystem::create_directories(folder);
   Random random(2);
   std::uint64_t taken = 0;
-  const std::uint64_t count = test::trials(200);
+  const std::uint64_t count = test::trials(100);
   for (std::uint64_t i = 0; i < count; ++i) {
     SCOPED_TRACE(i);
     const Extreme<Dim> extreme(random);

@@ -11,16 +11,12 @@
 #include "ductile/meshadapt/files.hpp"
 #include "support/preserved.hpp"
 #include "support/random_case.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::random_meshes_test {
 namespace {
 
 using runtime::Executor;
-
-std::uint64_t setting(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 void write_files(const std::string& name, const AnyMesh& mesh, const AnyField& metric) {
   const char* folder = std::getenv("DUCTILE_TRIAL_FOLDER");
@@ -53,9 +49,7 @@ void try_case(std::uint64_t seed) {
 }
 
 TEST(RandomMeshes, AreValidAfterAdaptation) {
-  const std::uint64_t first = setting("DUCTILE_FIRST_TRIAL", 0);
-  const std::uint64_t count = setting("DUCTILE_TRIALS", 60);
-  for (std::uint64_t seed = first; seed < first + count; ++seed)
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(60); ++seed)
     ASSERT_NO_THROW(try_case(seed)) << "seed " << seed;
 }
 

@@ -15,6 +15,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::refine_test {
 namespace {
@@ -230,7 +231,7 @@ TYPED_TEST(RefineIn, DoesNotDependOnThreads) {
   constexpr int Dim = TypeParam::value;
   for (const std::size_t most : {3, 100000}) {
     const Refined<Dim> one(7, 1, most);
-    for (const int threads : {2, 3, 4, 8}) {
+    for (const int threads : test::thread_counts) {
       const Refined<Dim> many(7, threads, most);
       EXPECT_EQ(many.mesh.corners_of, one.mesh.corners_of);
       EXPECT_EQ(many.mesh.patches_of, one.mesh.patches_of);

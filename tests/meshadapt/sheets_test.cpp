@@ -12,6 +12,7 @@
 
 #include "mesh/distance.hpp"
 #include "support/meshes.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::sheets_test {
 namespace {
@@ -110,6 +111,7 @@ void compare(const Sheets& sheets, const Parts& parts, const Facet& facet, doubl
 }
 
 TEST(Sheets, CoverATriangleOnlyIfAllOfItIsClose) {
+  if (test::sanitized) GTEST_SKIP();
   test::Random random(2);
   const auto parts = wave(7);
   std::array<int, 2> count{};

@@ -196,7 +196,7 @@ TEST(SurfaceCut, GivesTheSameBytesAtAnyNumberOfThreads) {
     Case c = boundary_only ? random_solid(14) : random_surface(14);
     c.options.boundary_only = boundary_only;
     const CutMesh expected = cut(Executor({.threads = 1}), c.mesh, c.values, c.options);
-    for (const int threads : {2, 3, 4, 8}) {
+    for (const int threads : test::thread_counts) {
       const CutMesh made = cut(Executor({.threads = threads}), c.mesh, c.values, c.options);
       expect_same_bytes(made, expected);
     }

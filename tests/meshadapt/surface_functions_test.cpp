@@ -23,6 +23,7 @@
 #include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::surface_functions_test {
 namespace {
@@ -148,6 +149,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, SurfaceFunctions,
                          [](const auto& at) { return std::string(at.param.name); });
 
 TEST_P(SurfaceFunctions, HaveAllVerticesOnThemInTenCalls) {
+  if (test::sanitized) GTEST_SKIP();
   const Executor executor({.threads = 2});
   AnyMesh mesh = mesh_of(GetParam());
   const AdaptOptions options = options_with(executor, mesh, {{1, GetParam().closest}});
@@ -160,6 +162,7 @@ TEST_P(SurfaceFunctions, HaveAllVerticesOnThemInTenCalls) {
 }
 
 TEST_P(SurfaceFunctions, NeedNoGeometry) {
+  if (test::sanitized) GTEST_SKIP();
   const Executor executor({.threads = 2});
   AnyMesh mesh = mesh_of(GetParam());
   AdaptOptions options;
@@ -173,6 +176,7 @@ TEST_P(SurfaceFunctions, NeedNoGeometry) {
 }
 
 TEST_P(SurfaceFunctions, GiveTheSameBytesAtAnyNumberOfThreads) {
+  if (test::sanitized) GTEST_SKIP();
   const AnyMesh first = mesh_of(GetParam());
   std::vector<std::uint64_t> expected;
   for (const int threads : {1, 2, 3, 4, 8}) {

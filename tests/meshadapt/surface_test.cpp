@@ -18,6 +18,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/bits.hpp"
+#include "support/trials.hpp"
 #include "surface_support.hpp"
 
 namespace ductile::meshadapt::surface_test {
@@ -47,7 +48,7 @@ double worst_quality(const AnyMesh& mesh) {
 // ---- Tests ----
 
 TEST(Surface, OfASphereStaysRound) {
-  for (const double size : {0.05, 0.2}) {
+  for (const double size : {0.07, 0.2}) {
     SCOPED_TRACE(size);
     const AdaptedMesh adapted = adapted_to(sphere(24), size, within(size / 20));
     EXPECT_EQ(euler(adapted.mesh), 2);
@@ -130,13 +131,14 @@ TEST(Surface, FollowsAnAnisotropicMetric) {
 }
 
 TEST(Surface, IsTheSameAtAnyNumberOfThreads) {
+  if (test::address_sanitized) GTEST_SKIP();
   const AnyMesh mesh = cylinder(40, true);
   const AnyField metric = constant_metric(mesh, 0.05);
   const auto on = [&](int threads) {
     return adapt(Executor({.threads = threads}), mesh, metric, within(0.004));
   };
   const AdaptedMesh first = on(1);
-  for (const int threads : {2, 3, 4, 8}) {
+  for (const int threads : test::thread_counts) {
     SCOPED_TRACE(threads);
     const AdaptedMesh other = on(threads);
     EXPECT_EQ(other.mesh, first.mesh);
@@ -181,7 +183,7 @@ TEST(Surface, StaysOnItsGeometry) {
   options.make.geometry = std::make_shared<const Geometry>(
       two(), first, GeometryOptions{.tolerance = options.make.hausdorff_tolerance});
   AnyMesh mesh = first;
-  for (const double size : {0.3, 0.1, 0.25, 0.06, 0.2, 0.05}) {
+  for (const double size : {0.3, 0.08, 0.25, 0.08}) {
     SCOPED_TRACE(size);
     mesh = adapted_to(mesh, size, options).mesh;
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
@@ -224,14 +226,14 @@ TEST(Surface, ThatIsThinDoesNotMeetItself) {
       const AnyMesh mesh = welded({side(0, true), side(thickness, false)});
       AdaptOptions options = within(0.07);
       options.make.lock_boundary = lock;
-      const AdaptedMesh adapted = adapted_to(mesh, 0.04, options);
+      const AdaptedMesh adapted = adapted_to(mesh, 0.06, options);
       EXPECT_EQ(euler(adapted.mesh), euler(mesh));
     }
 }
 
 /// Random sizes, folds, holes and noise: all results are valid.
 TEST(Surface, IsValidHoweverItIs) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= test::trials(20); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const auto uniform = [&](double low, double high) {

@@ -20,6 +20,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "io_support.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt::tagged_files_test {
 namespace {
@@ -372,7 +373,7 @@ TEST(TaggedFiles, KeepVerticesThatAreMarked) {
   const test::TemporaryFolder folder;
   Random random(9);
   for (const int dimension : {2, 3})
-    for (int trial = 0; trial < 30; ++trial) {
+    for (std::uint64_t trial = 0; trial < test::trials(15); ++trial) {
       AnyMesh mesh = random_box(random, dimension);
       for (int k = 1 + below(random, 5); k > 0; --k)
         mesh.vertex_reference[random() % mesh.vertex_count()] =

@@ -51,7 +51,7 @@ using Make = std::function<test::ThinCase(int, std::uint64_t)>;
 
 void try_many(const Make& make) {
   std::array<std::array<int, 10>, 4> attempts{};
-  for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(100); ++seed) {
     const int dimension = seed % 2 == 0 ? 2 : 3;
     const test::ThinCase thin = make(dimension, seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + thin.what);

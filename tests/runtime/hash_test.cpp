@@ -25,34 +25,6 @@ TEST(Hash, GivesDifferentIdsDifferentPriorities) {
   }
 }
 
-TEST(Hash, MixesFewBitsWithoutTies) {
-  for (unsigned bits = 0; bits <= 16; ++bits) {
-    std::unordered_set<std::uint32_t> seen;
-    const std::uint32_t count = 1U << bits;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      EXPECT_LT(mix_bits(i, bits), count);
-      EXPECT_EQ(mix_bits(i + count, bits), mix_bits(i, bits));  // higher bits do not count
-      EXPECT_TRUE(seen.insert(mix_bits(i, bits)).second) << i << " of " << bits << " bits";
-    }
-  }
-  EXPECT_NE(mix_bits(0x80000001U, 32), mix_bits(1, 32));
-}
-
-/// Neighbours are as often in order as not, and never in long runs.
-TEST(Hash, ScattersNeighbours) {
-  for (const unsigned bits : {10U, 15U, 20U}) {
-    const std::uint32_t count = 1U << bits;
-    std::uint32_t ascents = 0, run = 0, longest = 0;
-    for (std::uint32_t i = 0; i + 1 < count; ++i) {
-      const bool ascends = mix_bits(i, bits) < mix_bits(i + 1, bits);
-      ascents += ascends;
-      longest = std::max(longest, run = ascends ? run + 1 : 0);
-    }
-    EXPECT_NEAR(ascents / static_cast<double>(count), 0.5, 0.05) << bits;
-    EXPECT_LE(longest, 12U) << bits;
-  }
-}
-
 TEST(Hash, ChangesHalfTheBitsWhenOneChanges) {
   int changed32 = 0, changed64 = 0;
   for (std::uint32_t i = 0; i < 4096; ++i) {

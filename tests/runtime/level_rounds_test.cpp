@@ -130,8 +130,8 @@ void eliminate_plainly(Elimination& op) {
 template <class Op>
 RoundsReport run_at_once(const Executor& executor, Op& op,
                          const std::vector<typename Op::Item>& work) {
-  return detail::LevelRounds<Op>(executor, op, detail::Sharing::always)
-      .run(work, std::numeric_limits<std::size_t>::max());
+  return detail::run_by_level(executor, op, work, std::numeric_limits<std::size_t>::max(),
+                              detail::Sharing::always);
 }
 
 /// Vertices and edges: few and many vertices; hardly any edges, and enough for cliques to grow.

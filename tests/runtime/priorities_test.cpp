@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/runtime/detail/reservation_windows.hpp"
+#include "ductile/runtime/detail/reservation_rounds.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
@@ -90,14 +90,15 @@ TEST(Priorities, GiveAMaximalMatchingOfMany) {
 
 /// Keys of reservations are used up after 4,000 million items, or fewer for a test.
 TEST(Reservations, GoOnWhenTheirKeysAreUsedUp) {
-  using Windows = detail::ReservationWindows<WeightedMatching>;
+  using Rounds = detail::ReservationRounds<WeightedMatching>;
   constexpr Vertex vertices = 5000;
   constexpr std::size_t most_passes = 200;
   const auto edges = random_edges(vertices, 40000, 3);
   WeightedMatching expected(vertices), matching(vertices);
   const Executor executor({.threads = 2});
-  const auto many = Windows(executor, expected).run(edges, most_passes);
-  const auto few = Windows(executor, matching, Windows::most_window + 100).run(edges, most_passes);
+  const auto many = Rounds(executor, expected).run(edges, most_passes);
+  const auto few =
+      Rounds(executor, matching, Rounds::Windows::most_items + 100).run(edges, most_passes);
   EXPECT_EQ(many.left, 0U);
   EXPECT_EQ(few.left, 0U);
   EXPECT_EQ(matching.partner_of, expected.partner_of);

@@ -148,8 +148,8 @@ CsrRows graph_of(std::size_t n, std::size_t m, auto&& a, auto&& b) {
   return rows;
 }
 
-/// Graphs with more vertices than may be begun ahead of the first waiting one: a path and random
-/// edges. Graphs with fewer: no edges, a star, neighbours close in the order.
+/// Graphs of several windows: a path and random edges. Smaller ones: no edges, a star, neighbours
+/// close in the order.
 std::vector<CsrRows> graphs() {
   constexpr std::size_t n = 6000, many = 40000;
   const auto self = [](std::size_t i) { return i; };
@@ -167,20 +167,14 @@ std::vector<CsrRows> graphs() {
   return all;
 }
 
-/// Runs the work in parts of this size, each on several threads; a whole run does that only where
-/// it was faster so far. Returns the applied items.
+/// Runs all of the work on several threads; a whole run does that only where it was faster so far.
+/// Returns the applied items.
 template <class Op, class Work>
-std::vector<Vertex> run_at_once(const Executor& executor, Op& op, const Work& work,
-                                std::size_t part) {
-  typename detail::AtOnceOf<Op, Work>::Type at_once(executor, op, work);
+std::vector<Vertex> run_at_once(const Executor& executor, Op& op, const Work& work) {
   std::vector<Vertex> applied;
-  RoundsReport report;
-  const detail::OrderedCommit<Vertex> commit;
-  for (std::size_t begin = 0; begin < work.size(); begin += part)
-    at_once.run(
-        begin, std::min<std::size_t>(begin + part, work.size()),
-        [&](Vertex item, typename Op::Plan& plan) { op.apply(item, plan, commit); },
-        [&](Vertex item) { applied.push_back(item); }, report);
+  const auto note = [&](Vertex item) { applied.push_back(item); };
+  const RoundsReport report =
+      detail::run_in_order(executor, op, work, note, detail::Sharing::always);
   EXPECT_EQ(report.applied, applied.size());
   EXPECT_GE(report.planned, work.size());
   return applied;
@@ -191,17 +185,6 @@ std::vector<Vertex> shuffled(std::vector<Vertex> items) {
   return items;
 }
 
-TEST(InOrder, RefusesWorkWithoutAnOrder) {
-  const CsrRows rows = graphs()[1];
-  const Executor executor({.threads = 2});
-  GreedyColours op(rows);
-  std::vector<Vertex> twice = all_items(5000);
-  twice[4000] = 17;
-  EXPECT_THROW(run_at_once(executor, op, twice, 5000), std::invalid_argument);
-  twice[4000] = 40000;
-  EXPECT_THROW(run_at_once(executor, op, twice, 5000), std::out_of_range);
-}
-
 TEST(InOrder, GivesWhatAPlainLoopGives) {
   for (const CsrRows& rows : graphs()) {
     const std::size_t n = rows.view().vertex_count();
@@ -209,7 +192,6 @@ TEST(InOrder, GivesWhatAPlainLoopGives) {
     some.resize(n / 2);
     for (const auto& work : {all_items(n), shuffled(all_items(n)), some}) {
       GreedyColours plain(rows);
-      const std::size_t part = work[0] == 0 ? 7000 : work.size();
       const RoundsReport one = run_rounds(Executor({.threads = 1}), plain, work);
       EXPECT_EQ(one.applied, work.size());
       for (const int threads : thread_counts) {
@@ -219,7 +201,7 @@ TEST(InOrder, GivesWhatAPlainLoopGives) {
         EXPECT_EQ(report.applied, work.size());
         ASSERT_EQ(op.colour_of, plain.colour_of) << threads;
         GreedyColours again(rows);
-        EXPECT_EQ(run_at_once(Executor({.threads = threads}), again, work, part), work);
+        EXPECT_EQ(run_at_once(Executor({.threads = threads}), again, work), work);
         ASSERT_EQ(again.colour_of, plain.colour_of) << threads;
       }
     }
@@ -275,7 +257,7 @@ TEST(InOrder, GivesWhatAPlainLoopGivesWithoutConflicts) {
       EXPECT_EQ(applied_in_order(executor, op, AllNumbers(pairs)), expected);
       ASSERT_EQ(op.partner_of, plain.partner_of) << threads;
       Pairing again(count, pairs);
-      EXPECT_EQ(run_at_once(executor, again, all_items(pairs), 60000), expected);
+      EXPECT_EQ(run_at_once(executor, again, all_items(pairs)), expected);
       ASSERT_EQ(again.partner_of, plain.partner_of) << threads;
     }
   }
@@ -303,12 +285,12 @@ TEST(Strategies, PassOnWhatOperatorsThrow) {
     waker.wakes = true;
     const auto work = all_items(20000);
     EXPECT_THROW(run_rounds(executor, thrower, work), std::runtime_error);
-    EXPECT_THROW(run_at_once(executor, thrower, work, 20000), std::runtime_error);
+    EXPECT_THROW(run_at_once(executor, thrower, work), std::runtime_error);
     EXPECT_THROW(run_rounds(executor, waker, work), std::logic_error);
-    EXPECT_THROW(run_at_once(executor, waker, work, 20000), std::logic_error);
+    EXPECT_THROW(run_at_once(executor, waker, work), std::logic_error);
     Pairing ordered(5000, 20000);
     ordered.throws_at = 15000;
-    EXPECT_THROW(run_at_once(executor, ordered, work, 20000), std::runtime_error);
+    EXPECT_THROW(run_at_once(executor, ordered, work), std::runtime_error);
     for (const Strategy strategy :
          {Strategy::automatic, Strategy::in_order, Strategy::reservations}) {
       Pairing pairing(5000, 20000);

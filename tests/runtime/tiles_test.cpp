@@ -85,7 +85,7 @@ std::vector<Vertex> run_in_turn(Contract& op, const std::vector<Vertex>& work, s
 }
 
 TEST(Tiles, RunByTheirRanksAndPostponeWhomAnEqualOneComesBefore) {
-  constexpr Vertex side = 150;
+  constexpr Vertex side = 100;
   for (const auto& work : works(side))
     for (const int rounds : {1, 30}) {
       Contract expected(side);

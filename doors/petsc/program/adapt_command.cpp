@@ -68,16 +68,6 @@ std::vector<Option> options_here() {
   return options;
 }
 
-/// Prints costs over all ranks.
-void print_costs(const std::array<Costs, phase_count>& costs) {
-  constexpr std::array<const char*, phase_count> names{"balance", "migration", "gradation",
-                                                       "adaptation"};
-  for (std::size_t p = 0; p < phase_count; ++p)
-    std::printf("%s%s %.3f s, %.3f MB", p == 0 ? "  processor time and messages: " : "; ", names[p],
-                costs[p].seconds, 1e-6 * static_cast<double>(costs[p].bytes));
-  std::printf("\n");
-}
-
 /// The geometry of -geometry, on all ranks; null without it. Collective.
 std::shared_ptr<const meshadapt::Geometry> geometry_of(const Communicator& comm,
                                                        const Executor& executor,
@@ -104,9 +94,8 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
   options.passes = 6;
   if (job.memory) options.adapt.memory_limit = cli::memory_left(job.memory);
   if (comm.rank() == 0 && job.verbosity > 0)
-    options.told = [verbosity = job.verbosity](const PassReport& pass) {
+    options.told = [](const PassReport& pass) {
       std::printf("%s\n", to_text(pass).c_str());
-      if (verbosity > 1) print_costs(pass.costs);
       std::fflush(stdout);
     };
   return options;
@@ -116,18 +105,9 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
 std::vector<NamedField> fields_on(const Communicator& comm, const Executor& executor,
                                   const Input& input, const AdaptedParts& parts) {
   if (input.fields.empty()) return {};
-  const Costs before = comm.costs();
   const auto carrying =
       input.job.fields.interpolates() ? Carrying::by_value : Carrying::conservatively;
-  auto fields =
-      transfer_parts(comm, executor, {input.file.part, input.fields}, parts.part, {carrying});
-  const auto microseconds =
-      static_cast<std::int64_t>(1e6 * (comm.costs().seconds - before.seconds));
-  const auto sums = comm.sums({microseconds, comm.costs().bytes - before.bytes});
-  if (comm.rank() == 0 && input.job.verbosity > 1)
-    std::printf("  fields %.3f s, %.3f MB\n", 1e-6 * static_cast<double>(sums[0]),
-                1e-6 * static_cast<double>(sums[1]));
-  return fields;
+  return transfer_parts(comm, executor, {input.file.part, input.fields}, parts.part, {carrying});
 }
 
 void write(const Communicator& comm, const Executor& executor, Input& input,
@@ -170,7 +150,6 @@ int work(const Communicator& comm, const Executor& executor, Input& input) {
   const auto options = options_of(comm, input, geometry_of(comm, executor, input));
   AdaptedParts parts = adapt_to_sizes(comm, executor, input, options);
   input.warnings.insert(input.warnings.end(), parts.warnings.begin(), parts.warnings.end());
-  if (comm.rank() == 0 && input.job.verbosity > 1) print_costs(parts.last);
   auto fields = fields_on(comm, executor, input, parts);
   DistributedResult result{std::move(parts), std::move(fields), input.file.kept};
   write(comm, executor, input, result);

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <numeric>
 #include <string>
-#include <utility>
 
 #include "plex.hpp"
 #include "write_hdf5.hpp"

@@ -2,10 +2,8 @@
 /// Adaptation: options, report, and the progress function.
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -62,10 +60,6 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Rows of an array and their type. Without a metric, the mesh keeps its sizes, or gets those from
-/// curvature.
-using GivenMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
-
 /// Returns the result of adapt(executor, options), with Python's function as progress.
 template <class Adapt>
 py::tuple adapted_by(const AnyMesh& mesh, Adapt&& adapt, AdaptOptions options,
@@ -80,17 +74,14 @@ py::tuple adapted_by(const AnyMesh& mesh, Adapt&& adapt, AdaptOptions options,
           (loose.find(" hangs: ") == std::string::npos ? " (joined() joins them)" : ""));
     return result;
   });
-  const Shape shape{signed_size(adapted.mesh.vertex_count()),
-                    signed_size(stride_of(adapted.metric))};
   return py::make_tuple(std::make_shared<AnyMesh>(std::move(adapted.mesh)),
-                        take(std::move(adapted.metric.values), shape), std::move(adapted.report));
+                        array_of(std::move(adapted.metric)), std::move(adapted.report));
 }
 
+/// Without a metric, the mesh keeps its sizes, or gets those from curvature.
 py::tuple remesh(const AnyMesh& mesh, const GivenMetric& metric, const AdaptOptions& given_options,
                  const runtime::ExecutorOptions& threads, const py::object& progress) {
-  std::optional<AnyField> given;
-  if (metric)
-    given = field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric");
+  const auto given = metric_field(metric, mesh.dimension);
   const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
     const AnyField wanted =
         given ? meshadapt::metric_of(*given, mesh, {options.smallest_size, options.largest_size})
@@ -125,9 +116,7 @@ py::tuple refine_to_level_set(const AnyMesh& mesh, const GivenMetric& metric,
                               const py::function& function,
                               const meshadapt::LevelSetSizesOptions& sizes,
                               const runtime::ExecutorOptions& threads) {
-  std::optional<AnyField> given;
-  if (metric)
-    given = field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric");
+  const auto given = metric_field(metric, mesh.dimension);
   const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
     const AnyField wanted =
         given ? meshadapt::metric_of(*given, mesh) : meshadapt::default_metric(executor, mesh);

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -75,6 +78,36 @@ std::vector<T> copied(const Given<T>& array) {
 inline meshadapt::AnyField field_of(const Given<double>& array, meshadapt::AnyField::Type type,
                                     int dimension, const char* name) {
   return {dimension, static_cast<std::size_t>(array.shape(0)), {type}, copied(array), name};
+}
+
+/// Rows of an array and their type.
+using GivenMetric = std::optional<std::tuple<Given<double>, meshadapt::AnyField::Type>>;
+
+/// The metric at the vertices of a mesh, if one is given.
+inline std::optional<meshadapt::AnyField> metric_field(const GivenMetric& given, int dimension) {
+  if (!given) return std::nullopt;
+  return field_of(std::get<0>(*given), std::get<1>(*given), dimension, "metric");
+}
+
+/// The values of a field, a row for each vertex.
+inline py::array array_of(meshadapt::AnyField&& field) {
+  const Shape shape{signed_size(field.vertex_count), signed_size(stride_of(field))};
+  return take(std::move(field.values), shape);
+}
+
+/// Fields: name, type, on elements?, rows.
+using GivenFields =
+    std::vector<std::tuple<std::string, meshadapt::AnyField::Type, bool, Given<double>>>;
+
+inline meshadapt::NamedField::Place place_of(bool on_elements) {
+  using Place = meshadapt::NamedField::Place;
+  return on_elements ? Place::elements : Place::vertices;
+}
+inline std::vector<meshadapt::NamedField> named_fields(const GivenFields& given) {
+  std::vector<meshadapt::NamedField> fields;
+  for (const auto& [name, type, on_elements, rows] : given)
+    fields.push_back({name, type, copied(rows), place_of(on_elements)});
+  return fields;
 }
 
 /// The arrays of a Python Origin.

@@ -2,7 +2,6 @@
 /// Level sets: meshes cut along them, and what an adaptation of such a mesh needs.
 #include <memory>
 #include <optional>
-#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -53,8 +52,7 @@ py::array metric_of_cut(const Cut& cut, const std::optional<Given<double>>& give
     if (!wanted) wanted = meshadapt::default_metric(executor, *cut.before);
     return meshadapt::metric_at_cut(executor, *wanted, cut.made);
   });
-  const Shape shape{signed_size(found.vertex_count), signed_size(stride_of(found))};
-  return take(std::move(found.values), shape);
+  return array_of(std::move(found));
 }
 
 /// Lets adapt() put the interface, if there is one, on the surface of the level set.

@@ -185,13 +185,8 @@ std::tuple<std::vector<py::array>, Warnings> read_field(const std::string& path)
   return {std::move(arrays), std::move(warnings)};
 }
 
-using GivenFields = std::vector<std::tuple<std::string, AnyField::Type, bool, Given<double>>>;
-
 Warnings save(const AnyMesh& mesh, const std::string& path, const GivenFields& given) {
-  std::vector<NamedField> fields;
-  for (const auto& [name, type, on_elements, values] : given)
-    fields.push_back({name, type, copied(values),
-                      on_elements ? NamedField::Place::elements : NamedField::Place::vertices});
+  const std::vector<NamedField> fields = named_fields(given);
   Warnings warnings;
   const py::gil_scoped_release unlocked;
   meshadapt::write_mesh(path, mesh, {.fields = fields, .warnings = &warnings});
@@ -251,14 +246,16 @@ void bind_statistics(py::module_& module) {
       .def_property_readonly("share_in_range", &MeshStatistics::share_in_range);
 }
 
-/// The given metric as an AnyField, or none.
-struct MaybeMetric {
-  MaybeMetric(const AnyMesh& mesh, const std::optional<Given<double>>& given) {
-    if (given) field = field_of(*given, AnyField::Type::symmetric, mesh.dimension, "metric");
-  }
-  const AnyField* pointer() const { return field ? &*field : nullptr; }
-  std::optional<AnyField> field;
-};
+/// Calls work(executor, metric) with a pointer to the field of tensors, or null if none are given.
+template <class Work>
+auto work_in_metric(const AnyMesh& mesh, const std::optional<Given<double>>& tensors,
+                    Work&& measure) {
+  std::optional<AnyField> metric;
+  if (tensors) metric = field_of(*tensors, AnyField::Type::symmetric, mesh.dimension, "metric");
+  return work({}, [&](const runtime::Executor& executor) {
+    return measure(executor, metric ? &*metric : nullptr);
+  });
+}
 
 void bind_checks(py::module_& module) {
   module.def("check", [](const AnyMesh& mesh) {
@@ -277,16 +274,15 @@ void bind_checks(py::module_& module) {
     });
   });
   module.def("measure", [](const AnyMesh& mesh, const std::optional<Given<double>>& given) {
-    const MaybeMetric metric(mesh, given);
-    return work({}, [&](const runtime::Executor& executor) {
-      return meshadapt::measure(executor, mesh, metric.pointer());
+    return work_in_metric(mesh, given, [&](const runtime::Executor& executor, const auto* metric) {
+      return meshadapt::measure(executor, mesh, metric);
     });
   });
   module.def("quality", [](const AnyMesh& mesh, const std::optional<Given<double>>& given) {
-    const MaybeMetric metric(mesh, given);
-    return take(work({}, [&](const runtime::Executor& executor) {
-      return meshadapt::element_qualities(executor, mesh, metric.pointer());
-    }));
+    return take(
+        work_in_metric(mesh, given, [&](const runtime::Executor& executor, const auto* metric) {
+          return meshadapt::element_qualities(executor, mesh, metric);
+        }));
   });
 }
 

@@ -6,7 +6,6 @@
 
 #include "bindings.hpp"
 
-#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -25,11 +24,6 @@ using meshadapt::Sizes;
 using meshadapt::Vector;
 using runtime::Executor;
 using runtime::ExecutorOptions;
-
-py::array array_of(AnyField&& field) {
-  const Shape shape{signed_size(field.vertex_count), signed_size(stride_of(field))};
-  return take(std::move(field.values), shape);
-}
 
 // ---- Metrics of solutions and meshes ----
 

@@ -1,7 +1,6 @@
 /// @file
 /// The module ductile._ductile: the C++ library, unchanged. The Python package around it checks and
 /// converts arguments, and has the documentation.
-#include <exception>
 
 #include "bindings.hpp"
 

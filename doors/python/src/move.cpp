@@ -1,8 +1,6 @@
 /// @file
 /// Meshes that move.
 #include <memory>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -23,11 +21,8 @@ using meshadapt::MoveOptions;
 using meshadapt::MoveReport;
 using meshadapt::NamedField;
 
-/// A field of a mesh: name, type, whether it is on cells, rows.
-using CarriedField = std::tuple<std::string, AnyField::Type, bool, Given<double>>;
 /// The metric, fields, and whether the integrals of these are kept.
-using Carried = std::tuple<std::optional<std::tuple<Given<double>, AnyField::Type>>,
-                           std::vector<CarriedField>, bool>;
+using Carried = std::tuple<GivenMetric, GivenFields, bool>;
 
 py::list taken(std::vector<NamedField>& fields, int dimension) {
   py::list list;
@@ -43,29 +38,23 @@ py::tuple moved(const AnyMesh& mesh, const Given<double>& displacement, const Ca
                 const MoveOptions& given_options, const runtime::ExecutorOptions& threads) {
   const auto& [metric, fields, conservatively] = given;
   MoveOptions options = given_options;
-  std::vector<NamedField> carried;
-  for (const auto& [name, type, on_cells, rows] : fields)
-    carried.push_back({name, type, copied(rows),
-                       on_cells ? NamedField::Place::elements : NamedField::Place::vertices});
+  const std::vector<NamedField> carried = named_fields(fields);
   options.fields = carried;
   options.carrying = {conservatively ? Carrying::conservatively : Carrying::by_value};
   const AnyField vectors =
       field_of(displacement, AnyField::Type::vector, mesh.dimension, "displacement");
-  std::optional<AnyField> sizes;
-  if (metric) {
-    sizes = meshadapt::metric_of(
-        field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric"), mesh,
-        {options.smallest_size, options.largest_size});
+  auto sizes = metric_field(metric, mesh.dimension);
+  if (sizes) {
+    sizes = meshadapt::metric_of(*sizes, mesh, {options.smallest_size, options.largest_size});
     options.metric = &*sizes;
   }
   meshadapt::MovedMesh result = work(threads, [&](const runtime::Executor& executor) {
     return meshadapt::move(executor, mesh, vectors, options);
   });
-  const Shape shape{signed_size(result.mesh.vertex_count()), signed_size(stride_of(result.metric))};
-  return py::make_tuple(
-      std::make_shared<AnyMesh>(std::move(result.mesh)),
-      take(std::move(result.metric.values), shape), taken(result.fields, mesh.dimension),
-      arrays_of(std::move(result.origins), mesh.dimension), std::move(result.report));
+  return py::make_tuple(std::make_shared<AnyMesh>(std::move(result.mesh)),
+                        array_of(std::move(result.metric)), taken(result.fields, mesh.dimension),
+                        arrays_of(std::move(result.origins), mesh.dimension),
+                        std::move(result.report));
 }
 
 }  // namespace

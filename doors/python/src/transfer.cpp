@@ -31,8 +31,7 @@ using How = std::tuple<AnyField::Type, bool, bool>;
 py::tuple transfer(const AnyMesh& before, const AnyMesh& after, const Given<double>& values,
                    const How& how, const ExecutorOptions& threads) {
   const auto [type, on_cells, conservative] = how;
-  const auto place = on_cells ? NamedField::Place::elements : NamedField::Place::vertices;
-  const std::vector<NamedField> fields{{"u", type, copied(values), place}};
+  const std::vector<NamedField> fields = named_fields({{"u", type, on_cells, values}});
   const auto carrying = conservative ? Carrying::conservatively : Carrying::by_value;
   auto carried = work(threads, [&](const Executor& executor) {
     return meshadapt::transfer_fields(executor, {before, fields}, after, {carrying});

@@ -14,7 +14,6 @@
 #include <new>
 #include <stdexcept>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "ductile/runtime/executor.hpp"
@@ -58,14 +57,6 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
   }
   const T* at(std::uint32_t index) const { return const_cast<Arena*>(this)->at(index); }
 
-  /// Elements handed out, including those wasted at segment ends.
-  std::uint64_t used() const { return cursor_.load(std::memory_order_relaxed); }
-
-  /// Memory held, in bytes.
-  std::size_t bytes() const {
-    return slot_count * sizeof(std::atomic<T*>) + held_.load(std::memory_order_relaxed) * sizeof(T);
-  }
-
   /// Forgets every array and keeps the segments for those to come. Thread safety: one thread.
   void clear() {
     for (const Block& block : blocks_) drop(block);
@@ -87,14 +78,6 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
                                    // thread's range
     while (end > 0 && table_[end - 1].load(std::memory_order_relaxed) == nullptr) --end;
     parallel_for(executor, end, [&](std::size_t slot) { free_segment(slot); }, {.grain = 1});
-  }
-
-  /// Exchanges contents. Thread safety: one thread.
-  void swap(Arena& other) noexcept {
-    std::swap(table_, other.table_);
-    std::swap(blocks_, other.blocks_);
-    swap_values(cursor_, other.cursor_);
-    swap_values(held_, other.held_);
   }
 
  private:
@@ -120,11 +103,8 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
     T* const fresh = new_elements(segment_size);
     T* expected = nullptr;
     // Release pairs with the acquire in at(): a thread that sees the segment sees its contents.
-    if (table_[slot].compare_exchange_strong(expected, fresh, std::memory_order_acq_rel)) {
-      held_.fetch_add(segment_size, std::memory_order_relaxed);
-    } else {
+    if (!table_[slot].compare_exchange_strong(expected, fresh, std::memory_order_acq_rel))
       delete_elements(fresh);
-    }
   }
 
   std::uint32_t allocate_long(std::uint32_t n) {
@@ -142,33 +122,22 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
       free_segment(first_slot + s);  // a segment that clear() kept; nobody has an index into it
       table_[first_slot + s].store(block + (s << SegmentBits), std::memory_order_release);
     }
-    held_.fetch_add(slots << SegmentBits, std::memory_order_relaxed);
     return static_cast<std::uint32_t>(first_slot << SegmentBits);
   }
 
   void free_segment(std::uint64_t slot) {
-    if (T* const segment = table_[slot].exchange(nullptr, std::memory_order_relaxed)) {
-      delete_elements(segment);
-      held_.fetch_sub(segment_size, std::memory_order_relaxed);
-    }
+    delete_elements(table_[slot].exchange(nullptr, std::memory_order_relaxed));
   }
 
   void drop(const Block& block) {
     for (std::uint64_t s = 0; s < block.slots; ++s)
       table_[block.first_slot + s].store(nullptr, std::memory_order_relaxed);
     delete_elements(block.begin);
-    held_.fetch_sub(block.slots << SegmentBits, std::memory_order_relaxed);
-  }
-
-  static void swap_values(std::atomic<std::uint64_t>& a, std::atomic<std::uint64_t>& b) {
-    a.store(b.exchange(a.load(std::memory_order_relaxed), std::memory_order_relaxed),
-            std::memory_order_relaxed);
   }
 
   std::unique_ptr<std::atomic<T*>[]> table_;  // [slot], the segment or a part of a block
   alignas(128) std::atomic<std::uint64_t> cursor_{0};
-  alignas(128) std::atomic<std::uint64_t> held_{0};  // elements allocated
-  std::mutex blocks_mutex_;
+  alignas(128) std::mutex blocks_mutex_;
   std::vector<Block> blocks_;  // arrays longer than a segment
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// Atomic operations on ordinary data shared by threads: count, flip bits, mark, lower to a
-/// minimum, lock a word, make a value once. Within one phase of a loop, a word is accessed through
+/// Atomic operations on ordinary data shared by threads: count, mark, lower to a minimum,
+/// lock a word, make a value once. Within one phase of a loop, a word is accessed through
 /// these functions only.
 #pragma once
 
@@ -21,11 +21,6 @@ namespace ductile::runtime {
 /// Adds n and returns the value before. Thread safety: any thread.
 inline std::uint32_t atomic_count(std::uint32_t& where, std::uint32_t n = 1) {
   return std::atomic_ref(where).fetch_add(n, std::memory_order_relaxed);
-}
-
-/// Flips the bits that are set in `bits`. Thread safety: any thread.
-inline void atomic_flip(std::uint64_t& where, std::uint64_t bits) {
-  std::atomic_ref(where).fetch_xor(bits, std::memory_order_relaxed);
 }
 
 /// Sets the flag to 1. A flag that is set already is not written, so its cache line stays shared.

@@ -21,18 +21,6 @@ constexpr std::uint32_t mix32(std::uint32_t x) {
   return x;
 }
 
-/// A bijection of the integers below 2^bits; ignores higher bits of x. bits is at most 32.
-constexpr std::uint32_t mix_bits(std::uint32_t x, unsigned bits) {
-  const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
-  const unsigned half = (bits + 1) / 2;
-  x &= mask;
-  x ^= x >> half;
-  x = (x * 0x7feb352dU) & mask;
-  x ^= x >> half;
-  x = (x * 0x846ca68bU) & mask;
-  return x ^ x >> half;
-}
-
 /// A bijection of the 64-bit integers: variant 13 of D. Stafford's finaliser of MurmurHash3
 /// (2011), as used by SplitMix64.
 constexpr std::uint64_t mix64(std::uint64_t x) {

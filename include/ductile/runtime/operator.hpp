@@ -194,7 +194,7 @@ struct RoundsOptions {
 
 /// Statistics of a run. Times are wall-clock; a phase's time covers all its loops and what is
 /// between. If an item is applied right after it was planned, both count as applying; in_order and
-/// levels report no times.
+/// levels time only what several threads run.
 struct RoundsReport {
   std::size_t rounds = 0;
   std::size_t batches = 0;    ///< sets of items that ran together: windows, classes, or tiles
@@ -211,7 +211,21 @@ struct RoundsReport {
     return conflict_seconds + plan_seconds + apply_seconds + commit_seconds + wake_seconds;
   }
 
-  RoundsReport& operator+=(const RoundsReport& other);
+  RoundsReport& operator+=(const RoundsReport& other) {
+    rounds += other.rounds;
+    batches += other.batches;
+    planned += other.planned;
+    applied += other.applied;
+    lost += other.lost;
+    committed += other.committed;
+    left += other.left;
+    conflict_seconds += other.conflict_seconds;
+    plan_seconds += other.plan_seconds;
+    apply_seconds += other.apply_seconds;
+    commit_seconds += other.commit_seconds;
+    wake_seconds += other.wake_seconds;
+    return *this;
+  }
 };
 
 /// Adds its lifetime, in seconds, to a report. Thread safety: one thread, outside of loops; the

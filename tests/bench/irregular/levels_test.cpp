@@ -50,9 +50,9 @@ std::vector<WeightedGraph> large_graphs() {
 /// Runs all rounds on several threads; a whole run does that only where it was faster so far.
 template <class Op>
 void run_at_once(int threads, Op& op, const std::vector<typename Op::Item>& work) {
-  runtime::detail::LevelRounds<Op>(runtime::Executor({.threads = threads}), op,
-                                   runtime::detail::Sharing::always)
-      .run(work, std::numeric_limits<std::size_t>::max());
+  runtime::detail::run_by_level(runtime::Executor({.threads = threads}), op, work,
+                                std::numeric_limits<std::size_t>::max(),
+                                runtime::detail::Sharing::always);
 }
 
 TEST(ShortestPaths, AreDijkstras) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "ductile/runtime/colouring/colouring.hpp"
-#include "ductile/runtime/colouring/ordering.hpp"
 #include "graphs.hpp"
 
 namespace ductile::runtime::any_graph_test {
@@ -54,8 +53,7 @@ TEST(AnyGraph, HasTheColoursOfTheGraphItShows) {
   });
   const Executor executor({.threads = 2});
   for (const ColouringMethod method :
-       {ColouringMethod::serial, ColouringMethod::automatic, ColouringMethod::by_priority,
-        ColouringMethod::largest_first}) {
+       {ColouringMethod::serial, ColouringMethod::automatic, ColouringMethod::by_priority}) {
     for (const auto& graph : graphs())
       EXPECT_EQ(colour(executor, AnyGraph(graph.view()), method).colour_of,
                 colour(executor, graph.view(), method).colour_of)
@@ -64,9 +62,6 @@ TEST(AnyGraph, HasTheColoursOfTheGraphItShows) {
     EXPECT_EQ(direct.count, 300U);
     EXPECT_EQ(colour(executor, AnyGraph(clique), method).colour_of, direct.colour_of);
   }
-  std::vector<std::uint32_t> backwards(300);
-  for (std::uint32_t i = 0; i < 300; ++i) backwards[i] = 299 - i;
-  EXPECT_EQ(colour_in_order(executor, AnyGraph(clique), backwards).colour_of, backwards);
 }
 
 TEST(AnyGraph, SpeculativeMethodsColourWhatNeedsLongWords) {

@@ -2,10 +2,9 @@
 /// balance: evens out the classes of a colouring. Classes that run one after the other keep all
 /// threads busy only if none is tiny, and first-fit gives the first colours to most vertices.
 /// Each oversized class offers its vertices to undersized ones. Vertices of a class are not
-/// neighbours, so all choose at once; prefix sums over fixed blocks decide which ones move.
+/// neighbours, so all choose at once; then they move in order, while there is room.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -26,48 +25,34 @@ struct BalanceOptions {
 
 namespace detail {
 
-/// Surplus and room of each class of a colouring; decides which vertices move.
-class ClassSizes {
- public:
-  explicit ClassSizes(const ColourClasses& classes);
+/// The sizes of classes, and how far they are from equal.
+struct ClassSizes {
+  std::size_t fair;                  ///< the size of a class if all were equal, rounded up
+  std::vector<std::size_t> size_of;  ///< [colour]
 
-  std::size_t surplus(std::uint32_t colour) const;
-  std::size_t room(std::uint32_t colour) const;
-  std::size_t room() const { return room_before_.back(); }
-  /// A colour with room, chosen with probability proportional to it; `number` is any hash.
-  std::uint32_t colour_with_room(std::uint32_t number) const;
-  /// Moves vertices of one class to the colours they want (Colouring::none: nowhere) while there is
-  /// room and surplus; returns how many moved.
-  std::size_t move(const Executor& executor, std::span<const std::uint32_t> vertices,
-                   std::span<const std::uint32_t> wanted, std::vector<std::uint32_t>& colour_of);
-
- private:
-  void find_room();
-
-  std::size_t fair_;                      // the size of a class if all were equal, rounded up
-  std::vector<std::size_t> size_of_;      // [colour]
-  std::vector<std::size_t> room_before_;  // [colour], total room of all colours before it; last, of
-                                          // all
+  explicit ClassSizes(const ColourClasses& classes)
+      : fair(classes.vertices.empty() ? 0 : (classes.vertices.size() - 1) / classes.count() + 1) {
+    for (std::size_t c = 0; c < classes.count(); ++c) size_of.push_back(classes.members(c).size());
+  }
+  bool has_surplus(std::uint32_t colour) const { return size_of[colour] > fair; }
+  bool has_room(std::uint32_t colour) const { return size_of[colour] < fair; }
 };
 
-/// The colours of v's neighbours, as bits.
+/// A colour with room that no neighbour of v has, or Colouring::none. Vertices begin to search at
+/// different colours. `is_taken` is for scratch.
 template <Graph G>
-void find_taken(const G& graph, std::uint32_t v, const std::vector<std::uint32_t>& colour_of,
-                std::vector<std::uint64_t>& taken) {
-  std::fill(taken.begin(), taken.end(), 0);
+std::uint32_t colour_with_room(const G& graph, std::uint32_t v, const ClassSizes& sizes,
+                               const std::vector<std::uint32_t>& colour_of,
+                               std::vector<bool>& is_taken) {
+  const auto colours = static_cast<std::uint32_t>(sizes.size_of.size());
+  is_taken.assign(colours, false);
   graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    const std::uint32_t colour = colour_of[u];
-    if (colour != Colouring::none) taken[colour / 64] |= std::uint64_t{1} << (colour % 64);
+    if (colour_of[u] != Colouring::none) is_taken[colour_of[u]] = true;
   });
-}
-
-/// A colour with room that v may take, or Colouring::none.
-inline std::uint32_t choose(const ClassSizes& sizes, std::uint32_t v, std::uint32_t colours,
-                            const std::vector<std::uint64_t>& taken) {
-  const std::uint32_t first = sizes.colour_with_room(mix32(v));
+  const std::uint32_t first = mix32(v) % colours;
   for (std::uint32_t i = 0; i < colours; ++i) {
     const std::uint32_t colour = first + i < colours ? first + i : first + i - colours;
-    if ((taken[colour / 64] >> (colour % 64) & 1U) == 0 && sizes.room(colour) > 0) return colour;
+    if (!is_taken[colour] && sizes.has_room(colour)) return colour;
   }
   return Colouring::none;
 }
@@ -76,25 +61,30 @@ inline std::uint32_t choose(const ClassSizes& sizes, std::uint32_t v, std::uint3
 template <Graph G>
 void balance_in_team(const Executor& executor, const G& graph, Colouring& colouring,
                      const BalanceOptions& options) {
-  PerThread<std::vector<std::uint64_t>> taken(executor);
-  for (std::size_t t = 0; t < taken.size(); ++t) taken[t].resize(colouring.count / 64 + 1);
-  for (int pass = 0; pass < options.most_passes; ++pass) {
+  PerThread<std::vector<bool>> is_taken(executor);
+  std::size_t moved = 1;
+  for (int pass = 0; pass < options.most_passes && moved > 0; ++pass) {
+    moved = 0;
     const ColourClasses classes = colour_classes(executor, colouring);
     ClassSizes sizes(classes);
-    std::size_t moved = 0;
-    for (std::uint32_t c = 0; c < colouring.count && sizes.room() > 0; ++c) {
-      if (sizes.surplus(c) == 0) continue;
+    for (std::uint32_t c = 0; c < colouring.count; ++c) {
+      if (!sizes.has_surplus(c)) continue;
       const std::span vertices = classes.members(c);
       std::vector<std::uint32_t> wanted(vertices.size());
       parallel_for(executor, vertices.size(),
                    [&](std::size_t i) {
-                     find_taken(graph, vertices[i], colouring.colour_of, taken.mine());
-                     wanted[i] = choose(sizes, vertices[i], colouring.count, taken.mine());
+                     wanted[i] = colour_with_room(graph, vertices[i], sizes, colouring.colour_of,
+                                                  is_taken.mine());
                    },
                    {.grain = 256, .serial_below = 1024});
-      moved += sizes.move(executor, vertices, wanted, colouring.colour_of);
+      for (std::size_t i = 0; i < vertices.size() && sizes.has_surplus(c); ++i) {
+        if (wanted[i] == Colouring::none || !sizes.has_room(wanted[i])) continue;
+        colouring.colour_of[vertices[i]] = wanted[i];
+        --sizes.size_of[c];
+        ++sizes.size_of[wanted[i]];
+        ++moved;
+      }
     }
-    if (moved == 0) break;
   }
 }
 

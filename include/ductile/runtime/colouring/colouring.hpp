@@ -10,7 +10,7 @@
 //   together                 otherwise: the same colours, in windows_in_order or parts_in_order
 //   priority_colouring       recolouring scattered vertices, and comparison
 //   speculative_colouring    on request, and for borders of parts: published schemes, whose result
-//                            depends on timing; threads share the vertices by fronts
+//                            depends on timing
 
 #include <algorithm>
 #include <cstddef>
@@ -32,16 +32,15 @@
 namespace ductile::runtime {
 
 enum class ColouringMethod {
-  automatic,      ///< the colours of `serial`, on all threads where that is faster; an executor
-                  ///< that is not deterministic may take one colour more
-  serial,         ///< first-fit in vertex order on the calling thread
-  by_priority,    ///< a hash decides which neighbour comes first; deterministic, a yardstick
-                  ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
-  largest_first,  ///< by_priority, but greater degrees go first: fewer colours, longer chains
-  detect_again,   ///< speculate; detect and recolour at once, one barrier a round
-                  ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
-  two_phase,      ///< speculate; colour, then detect, a barrier after each
-                  ///< (Catalyurek et al., Parallel Computing 38, 2012)
+  automatic,     ///< the colours of `serial`, on all threads where that is faster; an executor
+                 ///< that is not deterministic may take one colour more
+  serial,        ///< first-fit in vertex order on the calling thread
+  by_priority,   ///< a hash decides which neighbour comes first; deterministic, a yardstick
+                 ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
+  detect_again,  ///< speculate; detect and recolour at once, one barrier a round
+                 ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
+  two_phase,     ///< speculate; colour, then detect, a barrier after each
+                 ///< (Catalyurek et al., Parallel Computing 38, 2012)
 };
 
 /// One colour per vertex, different for neighbours.
@@ -77,8 +76,6 @@ bool with_class_of(ColouringMethod chosen, Use&& use) {
       return use(Serial());
     case ColouringMethod::by_priority:
       return use(ByPriority());
-    case ColouringMethod::largest_first:
-      return use(ByDegree());
     case ColouringMethod::detect_again:
       return use(DetectAgain());
     case ColouringMethod::two_phase:
@@ -113,11 +110,7 @@ bool colour_in_bytes(const Executor& executor, const G& graph, std::vector<std::
     if constexpr (!requires { Method::resumes; })
       std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
   }
-  if constexpr (requires { Method::lengthens; }) {
-    return false;
-  } else {
-    return colour_in<Method, Long>(executor, graph, bytes, vertices);
-  }
+  return colour_in<Method, Long>(executor, graph, bytes, vertices);
 }
 
 /// The same for all vertices with a memory-bound method, for which the overhead of AnyGraph is
@@ -130,10 +123,6 @@ bool colour_slowly_in_bytes(const Executor& executor, const G& graph, ColouringM
 template <CompiledGraph G>
 std::uint32_t colour_in_words(const Executor& executor, const G& graph, ColouringMethod chosen,
                               std::vector<std::uint32_t>& colour_of);
-
-/// Copies one-byte colours to four-byte words. Returns one more than the greatest.
-std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
-                    std::span<std::uint32_t> colour_of);
 
 /// One more than the greatest colour; every vertex has one.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint8_t> bytes);
@@ -173,7 +162,7 @@ void recolour_in_team(const Executor& executor, const G& graph,
   // Scattered vertices rarely wait for each other.
   const bool are_scattered = vertices.size() < colour_of.size() / 16;
   if (vertices.size() >= few_vertices && are_scattered) {
-    colour_by_priority<AwaitedByPlace>(executor, graph, vertices, colours, outranks);
+    colour_by_priority<AwaitedByPlace>(executor, graph, vertices, colours);
   } else {
     Serial::run(executor, graph, set, colours);
   }

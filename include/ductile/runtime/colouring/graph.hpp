@@ -29,8 +29,7 @@ concept Graph = requires(const G& graph, std::uint32_t v) {
 /// A graph that can fetch a vertex's neighbours into the cache ahead of use: prefetch(v). It takes
 /// a few instructions and changes nothing. It helps where the rows of many vertices are read in
 /// sequence and everything else hits the cache, which the hardware does not anticipate. It is
-/// called for the vertex 32 places ahead, or the graph's constant prefetch_distance. Thread safety:
-/// as visiting.
+/// called for the vertex 32 places ahead. Thread safety: as visiting.
 template <class G>
 concept PrefetchingGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
   graph.prefetch(v);

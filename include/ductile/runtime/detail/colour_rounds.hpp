@@ -187,7 +187,10 @@ class ColourRounds {
       slots[i].acts = slots[i].is_planned && plan(item, slots[i].plan);
     };
     parallel_for(executor_, slots.size(), plan_item, grain);
-    made_.number(slots, [](const Slot& slot) { return slot.acts; });
+    made_.number([&](auto&& number) {
+      for (Slot& slot : slots)
+        if (slot.acts) number(slot);
+    });
     woken_.grow(op_.resource_count());
     const auto apply_item = [&](std::size_t i) {
       if (slots[i].acts) apply(work[places[i]], slots[i].plan, turn, slots[i].fresh);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace ductile::runtime {
 
@@ -25,7 +26,12 @@ enum class ContractRule : std::uint8_t {
 
 class ContractBroken : public std::logic_error {
  public:
-  ContractBroken(ContractRule rule, std::string item, std::uint32_t round, const std::string& how);
+  ContractBroken(ContractRule rule, std::string item, std::uint32_t round, const std::string& how)
+      : std::logic_error("operator breaks its contract: item " + item + ", round " +
+                         std::to_string(round) + ": " + how),
+        rule_(rule),
+        item_(std::move(item)),
+        round_(round) {}
 
   ContractRule rule() const { return rule_; }
   const std::string& item() const { return item_; }  ///< by to_string(), or its place

@@ -68,26 +68,26 @@ class MadeThings {
     }
   }
 
-  /// Gives each slot for which acts(slot) holds the new numbers that its plan demands, in order.
-  template <class Slot>
-  void number(std::span<Slot> slots, auto&& acts) requires(kinds > 0) {
+  /// Gives each acting slot the new numbers that its plan demands: visit(number) calls number(slot)
+  /// for these slots, in order. Is called twice.
+  void number(auto&& visit) requires(kinds > 0) {
     std::array<std::size_t, kinds> more{}, first{};
-    for (Slot& slot : slots) {
-      if (!acts(slot)) continue;
+    visit([&](auto& slot) {
       const auto wanted = op_.demand(slot.plan);
       for (std::size_t k = 0; k < kinds; ++k) {
         slot.fresh.next[k] = static_cast<std::uint32_t>(more[k]);
         more[k] += wanted[k];
         slot.fresh.end[k] = static_cast<std::uint32_t>(more[k]);
       }
-    }
+    });
     for (std::size_t k = 0; k < kinds; ++k) first[k] = numbers_[k].extend(more[k]);
     make_room();
-    for (Slot& slot : slots)
+    visit([&](auto& slot) {
       for (std::size_t k = 0; k < kinds; ++k) {
         slot.fresh.next[k] += static_cast<std::uint32_t>(first[k]);
         slot.fresh.end[k] += static_cast<std::uint32_t>(first[k]);
       }
+    });
   }
 
   /// Returns numbers that were reserved but not used.

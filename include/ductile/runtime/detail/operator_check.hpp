@@ -160,7 +160,7 @@ class OperatorCheck {
   /// May an item share a window with the previous one?
   bool is_in_order_after(const Numbered& other) const {
     if constexpr (has_levels) return other.level == level_ && other.number < round_end_;
-    return in_order_ && !ConflictingOperator<Op>;
+    return in_order_;
   }
 
   static std::string name_of(const Numbered& item) { return item_name(item.item, item.number); }

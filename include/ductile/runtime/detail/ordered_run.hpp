@@ -1,115 +1,176 @@
 /// @file
-/// run_in_order: the strategy `in_order`. Parts of the work are run by a plain loop or by several
-/// threads, whichever has been faster so far; the result is the same.
+/// OrderedRun: runs items in the order of the work, for the strategy `in_order` and within a level.
+/// Parts of the work are run by a plain loop or as a window of reservations, whose losers one
+/// thread runs in order afterwards; whichever has been faster so far is used. The result is the
+/// same.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
-#include "ductile/runtime/detail/ordered_stream.hpp"
-#include "ductile/runtime/detail/ordered_windows.hpp"
 #include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/detail/reservation_windows.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 
-/// apply()'s argument in the strategy in_order, where no item may be woken.
-template <class Item>
-struct OrderedCommit {
-  void wake(const Item&) const {
-    throw std::logic_error(
-        "strategy in_order: an item was woken, but only the work itself has an order");
-  }
-  void postpone(const Item& item) const { wake(item); }
-};
+/// Which parts several threads run. Tests use `always`.
+enum class Sharing : std::uint8_t { where_faster, always };
 
-/// The engine that runs a part of the work on several threads.
-template <class Op, class Work>
-struct AtOnceOf {
-  using Type = OrderedWindows<Op, Work>;
-};
-template <ConflictingOperator Op, class Work>
-struct AtOnceOf<Op, Work> {
-  using Type = OrderedStream<Op, Work>;
-};
-
-/// One run. Work has size() and operator[].
-template <Operator Op, class Work>
-class OrderedRun {
+/// Chooses between a plain loop and several threads for each part of a run. Tries both from time to
+/// time, ever less often while the same one wins.
+class FasterWay {
  public:
-  using Item = typename Op::Item;
-  using Plan = typename Op::Plan;
-
-  OrderedRun(const Executor& executor, Op& op, const Work& work)
-      : executor_(executor), op_(op), work_(work) {}
-
-  /// Calls applied(item) for each applied item, in the order of the work.
-  RoundsReport run(auto&& applied) {
-    if (executor_.threads() == 1) {
-      run_plainly(0, work_.size(), applied);
-      return report_;
+  /// Runs a part of so many items by plain() or at_once().
+  void run(std::size_t count, auto&& plain, auto&& at_once) {
+    const auto items = static_cast<double>(count);
+    if (plain_ < too_fast_to_share || items * plain_ < too_short_to_share) {
+      plain_ = timed(plain) / items;
+      return;
     }
-    double plain = 0, at_once = 0;  // nanoseconds per item
-    for (std::size_t begin = 0, number = 0; begin < work_.size(); begin += part, ++number) {
-      const std::size_t end = std::min<std::size_t>(begin + part, work_.size());
-      const std::size_t turn = number % tried_every;
-      // The plain loop runs twice, because its first part may have to fetch memory.
-      const bool is_plain_turn = turn != 1 && (turn <= 2 || plain < at_once);
-      const bool is_plain = is_plain_turn || plain < too_fast_to_share;
-      const auto start = std::chrono::steady_clock::now();
-      if (is_plain) {
-        run_plainly(begin, end, applied);
-      } else {
-        run_at_once(begin, end, applied);
-      }
-      const std::chrono::duration<double, std::nano> time =
-          std::chrono::steady_clock::now() - start;
-      (is_plain ? plain : at_once) = time.count() / static_cast<double>(end - begin);
-    }
-    return report_;
+    if (trial_ == 0 && --until_trial_ == 0) begin_trial();
+    const bool is_at_once = trial_ > 0 ? trial_ % 2 == 0 : at_once_wins_;
+    double& best = is_at_once ? best_at_once_ : best_plain_;
+    const double time = (is_at_once ? timed(at_once) : timed(plain)) / items;
+    best = std::min(best, time);
+    if (!is_at_once) plain_ = time;
+    if (trial_ > 0 && --trial_ == 0) end_trial();
   }
 
  private:
-  using AtOnce = typename AtOnceOf<Op, Work>::Type;
-  static constexpr std::size_t part = 65536, tried_every = 16;
+  static constexpr std::size_t tried_often = 64, tried_seldom = 1024;  // parts between two trials
+  static constexpr double too_short_to_share = 8000;                   // nanoseconds, a part
   static constexpr double too_fast_to_share = 8;  // nanoseconds two cores need to share an item
 
-  void run_plainly(std::size_t begin, std::size_t end, auto&& applied) {
-    Plan plan{};
-    ReachAll reach;
-    report_.planned += end - begin;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Item item = work_[i];
-      if (!op_.plan(item, plan, reach)) continue;
-      op_.apply(item, plan, commit_);
-      applied(item);
-      ++report_.applied;
+  /// Calls run(); returns nanoseconds.
+  static double timed(auto&& run) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start)
+        .count();
+  }
+
+  void begin_trial() {
+    trial_ = 4;  // the best of two parts each, because other programs may use the cores meanwhile
+    best_plain_ = best_at_once_ = std::numeric_limits<double>::max();
+  }
+  void end_trial() {
+    const bool wins = best_at_once_ < best_plain_;
+    tried_every_ = wins == at_once_wins_ ? std::min(2 * tried_every_, tried_seldom) : tried_often;
+    until_trial_ = tried_every_;
+    at_once_wins_ = wins;
+  }
+
+  double plain_ = 0;                          // nanoseconds per item, the last time it was used
+  double best_plain_ = 0, best_at_once_ = 0;  // in a trial
+  bool at_once_wins_ = false;
+  std::size_t trial_ = 0;  // parts left in the current trial
+  std::size_t until_trial_ = 1, tried_every_ = tried_often;
+};
+
+/// One run. wake(item) is called for the items that others wake, in the order of the work.
+template <Operator Op, class Wake>
+class OrderedRun {
+ public:
+  using Item = typename Op::Item;
+
+  OrderedRun(const Executor& executor, Op& op, RoundsReport& report, Wake wake,
+             Sharing sharing = Sharing::where_faster)
+      : executor_(executor),
+        op_(op),
+        report_(report),
+        commit_{std::move(wake)},
+        sharing_(sharing) {}
+
+  /// Runs work, which has size() and operator[]. Calls applied(item) for each applied item, in
+  /// order.
+  void run(const auto& work, auto&& applied) {
+    const bool is_alone = executor_.threads() == 1 && sharing_ == Sharing::where_faster;
+    const std::size_t part = is_alone ? work.size() : Windows::most_items;
+    for (std::size_t begin = 0; begin < work.size(); begin += part) {
+      const std::size_t end = std::min<std::size_t>(begin + part, work.size());
+      const auto plain = [&] {
+        report_.planned += end - begin;
+        run_plainly(work, begin, end, applied);
+      };
+      const auto at_once = [&] { run_at_once(work, begin, end, applied); };
+      if (sharing_ == Sharing::always) {
+        at_once();
+      } else if (is_alone) {
+        plain();
+      } else {
+        faster_.run(end - begin, plain, at_once);
+      }
     }
   }
 
-  void run_at_once(std::size_t begin, std::size_t end, auto&& applied) {
-    if (!at_once_) at_once_.emplace(executor_, op_, work_);
-    const auto apply = [&](const Item& item, Plan& plan) { op_.apply(item, plan, commit_); };
-    at_once_->run(begin, end, apply, applied, report_);
+ private:
+  using Plan = typename Op::Plan;
+  using Windows = ReservationWindows<Op>;
+
+  struct Commit {
+    Wake wake;
+    void postpone(const Item& item) { wake(item); }
+  };
+
+  /// What each item changes is local, so that compilers can keep it in registers.
+  void run_plainly(const auto& work, std::size_t begin, std::size_t end, auto&& applied) {
+    ReachAll reach;
+    Plan plan = std::move(plan_);
+    std::size_t done = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Item item = work[i];
+      if (!op_.plan(item, plan, reach)) continue;
+      op_.apply(item, plan, commit_);
+      applied(item);
+      ++done;
+    }
+    report_.applied += done;
+    plan_ = std::move(plan);
+  }
+
+  /// An item without a plan is done, because earlier items of its window cannot give it one.
+  void run_at_once(const auto& work, std::size_t begin, std::size_t end, auto&& applied) {
+    if (!windows_) windows_.emplace(executor_, op_, report_);
+    const auto won = [&](const Item& item, std::span<const Item> woken) {
+      for (const Item& other : woken) commit_.wake(other);
+      applied(item);
+    };
+    const auto lost = [&](const Item& item) { run_plainly(std::span(&item, 1), 0, 1, applied); };
+    const auto item_at = [&](std::size_t i) -> Item { return work[begin + i]; };
+    windows_->run(end - begin, item_at, won, lost);
   }
 
   const Executor& executor_;
   Op& op_;
-  const Work& work_;
-  OrderedCommit<Item> commit_;
-  std::optional<AtOnce> at_once_;
-  RoundsReport report_{.rounds = 1};
+  RoundsReport& report_;
+  Commit commit_;
+  Sharing sharing_;
+  FasterWay faster_;
+  std::optional<Windows> windows_;
+  Plan plan_{};  // keeps its memory from part to part
 };
 
-/// Runs all of the work, which has size() and operator[]. Calls applied(item) for each applied
-/// item, in the order of the work.
-template <Operator Op, class Work>
-RoundsReport run_in_order(const Executor& executor, Op& op, const Work& work, auto&& applied) {
-  return OrderedRun<Op, Work>(executor, op, work).run(applied);
+/// Runs all of the work, which has size() and operator[], by the strategy in_order, where no item
+/// may be woken. Calls applied(item) for each applied item, in the order of the work.
+template <Operator Op>
+RoundsReport run_in_order(const Executor& executor, Op& op, const auto& work, auto&& applied,
+                          Sharing sharing = Sharing::where_faster) {
+  RoundsReport report{.rounds = 1};
+  const auto refuse = [](const typename Op::Item&) {
+    throw std::logic_error(
+        "strategy in_order: an item was woken, but only the work itself has an order");
+  };
+  OrderedRun(executor, op, report, refuse, sharing).run(work, applied);
+  return report;
 }
 
 }  // namespace ductile::runtime::detail

@@ -1,15 +1,14 @@
 /// @file
-/// ReservationWindows: the strategy `reservations`. A window of the work is planned at once; an
-/// item with a plan reserves what it has reached, the lowest place in the window wins, and items
-/// that hold all they have reached are applied. The share of losers determines the size of the next
-/// window. If items have priorities, places follow their order.
+/// ReservationWindows: runs windows of the work on several threads. All items of a window are
+/// planned at once; an item with a plan reserves what it has reached, the lowest key wins, and
+/// items that hold all they have reached are applied. The caller decides what becomes of the
+/// losers. Keys follow the order of the window, or priorities.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ductile/runtime/atomic.hpp"
@@ -22,118 +21,90 @@
 
 namespace ductile::runtime::detail {
 
-template <Operator Op>
+template <Operator Op, bool by_priority = false>
 class ReservationWindows {
  public:
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
-  /// Keys fall from this one and restart there when used up. It is at least the size of the largest
-  /// window.
-  ReservationWindows(const Executor& executor, Op& op, std::uint32_t highest_key = nobody)
-      : executor_(executor), op_(op), made_(op), highest_key_(highest_key) {}
   static constexpr std::uint32_t nobody = 0xffffffffU;  ///< holds a resource that no item has
                                                         ///< reached
-  static constexpr std::size_t most_window = 8192;      ///< items in a window
+  static constexpr std::size_t most_items = 8192;       ///< in a window
 
-  /// The losers and the woken items are the next pass's work.
-  RoundsReport run(std::vector<Item> work, std::size_t most_passes) {
-    while (!work.empty() && report_.rounds < most_passes) {
-      ++report_.rounds;
-      if constexpr (RankedOperator<Op>) {
-        run_pass(work, [](std::size_t i) { return i; });
-      } else {
-        run_pass(work, Strides(work.size(), window_));
-      }
-      work.swap(lost_);
-      lost_.clear();
-      work.insert(work.end(), woken_.begin(), woken_.end());
-      woken_.clear();
-    }
-    return finish(work.size());
-  }
+  /// Keys fall from `highest_key` and restart there when used up. It is at least most_items.
+  ReservationWindows(const Executor& executor, Op& op, RoundsReport& report,
+                     std::uint32_t highest_key = nobody)
+      : executor_(executor),
+        op_(op),
+        report_(report),
+        made_(op),
+        highest_key_(highest_key),
+        blocks_(most_items / block_size) {}
 
- private:
-  void run_pass(const std::vector<Item>& work, auto&& place_at) {
-    for (std::size_t at = 0; at < work.size();) {
-      const std::size_t count = std::min(window_, work.size() - at);
-      run_window(count, [&](std::size_t i) -> const Item& { return work[place_at(at + i)]; });
-      at += count;
-    }
-  }
-
-  /// The order 0, k, 2 k, ..., 1, 1 + k, ... of n places, for k of about n / window: items that are
-  /// far apart in the work seldom touch.
-  class Strides {
-   public:
-    Strides(std::size_t n, std::size_t window)
-        : step_((n + window - 1) / window), each_(n / step_), longer_(n % step_) {}
-    std::size_t operator()(std::size_t i) const {
-      const std::size_t in_longer = longer_ * (each_ + 1);
-      if (i < in_longer) return i % (each_ + 1) * step_ + i / (each_ + 1);
-      return (i - in_longer) % each_ * step_ + longer_ + (i - in_longer) / each_;
-    }
-
-   private:
-    std::size_t step_, each_, longer_;
-  };
-
-  enum class Outcome : std::uint8_t { nothing, lost, won };
-  struct Slot {
-    Item item{};
-    Plan plan{};
-    std::vector<std::uint32_t> reached;
-    std::vector<Item> woken;
-    typename MadeThings<Op>::New fresh;
-    Outcome outcome = Outcome::nothing;
-  };
-
-  struct SlotCommit {
-    Slot& slot;
-    void wake(const Item& item) { slot.woken.push_back(item); }
-    void postpone(const Item& item) { wake(item); }
-    std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
-      return slot.fresh.take(kind);
-    }
-  };
-
-  void run_window(std::size_t count, auto&& item_at) {
+  /// Runs a window of the items item_at(i), i < count. Then calls won(item, woken) for the applied
+  /// items, with those that they woke, and lost(item) for those that did not get all they had
+  /// reached, in the order of the window. Items without a plan are done.
+  void run(std::size_t count, auto&& item_at, auto&& won, auto&& lost) {
     ++report_.batches;
+    report_.planned += count;
     begin_window(count, item_at);
+    const std::size_t size = std::max(least_block_size, (count - 1) / blocks_.size() + 1);
+    const auto blocks = std::span(blocks_).first((count - 1) / size + 1);
     {
       const PhaseTimer timer(report_.plan_seconds);
-      parallel_for(
-          executor_, count,
-          [&](std::size_t i) {
-            prefetch_after(i, count, item_at);
-            plan(slots_[i], item_at(i), i);
-          },
-          grain);
+      parallel_for_blocks(executor_, count, size,
+                          [&](std::size_t block, std::size_t begin, std::size_t end) {
+                            plan(blocks[block], {begin, end, count}, item_at);
+                          });
     }
     const PhaseTimer timer(report_.apply_seconds);
-    if constexpr (MadeThings<Op>::kinds > 0) {
-      parallel_for(
-          executor_, count, [&](std::size_t i) { settle(slots_[i], i); }, grain);
-      made_.number(std::span(slots_).first(count),
-                   [](const Slot& slot) { return slot.outcome == Outcome::won; });
-      parallel_for(
-          executor_, count, [&](std::size_t i) { apply(slots_[i]); }, grain);
-    } else {
-      parallel_for(
-          executor_, count,
-          [&](std::size_t i) {
-            settle(slots_[i], i);
-            apply(slots_[i]);
-          },
-          grain);
-    }
-    end_window(count);
+    apply_winners(blocks, item_at);
+    for (Block& block : blocks) end_block(block, item_at, won, lost);
   }
+
+  /// Ends the run of an operator that makes things.
+  void close_holes() { made_.close_holes(); }
+
+ private:
+  static constexpr bool makes_things = kinds_made<Op> != 0;
+  static constexpr std::size_t block_size = 64, least_block_size = 16;
+
+  /// An item with a plan. Ends are those of its part of the block's lists; the previous one's end
+  /// is the beginning.
+  struct Candidate {
+    Plan plan{};
+    typename MadeThings<Op>::New fresh;
+    std::uint32_t number = 0;  // in the window
+    std::uint32_t reached_end = 0, woken_end = 0;
+    bool has_won = false;
+  };
+  /// A part of a window. The first `count` candidates count; the others keep their memory.
+  struct alignas(128) Block {
+    std::vector<Candidate> candidates;
+    std::vector<std::uint32_t> reached;
+    std::vector<Item> woken;
+    std::size_t count = 0;
+
+    std::span<Candidate> planned() { return std::span(candidates).first(count); }
+  };
+  /// The items of a block, and the number of all in the window.
+  struct Part {
+    std::size_t begin, end, count;
+  };
+
+  struct BlockCommit {
+    Block& block;
+    Candidate& candidate;
+    void wake(const Item& item) { block.woken.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
+    std::uint32_t fresh(std::size_t kind = 0) requires(makes_things) {
+      return candidate.fresh.take(kind);
+    }
+  };
 
   /// Keys fall from window to window, so that reservations of earlier windows do not count.
   void begin_window(std::size_t count, auto&& item_at) {
-    if constexpr (RankedOperator<Op>) rank(count, item_at);
-    if (slots_.size() < count) slots_.resize(count);
+    if constexpr (by_priority) rank(count, item_at);
     if (first_key_ < count) {
       std::fill(holder_of_.begin(), holder_of_.end(), nobody);
       first_key_ = highest_key_;
@@ -142,7 +113,7 @@ class ReservationWindows {
     holder_of_.resize(std::max(holder_of_.size(), op_.resource_count()), nobody);
   }
 
-  /// Ranks the window's places by priority; of equal ones, the first in the work comes first.
+  /// Ranks the window's items by priority; of equal ones, the first in the work comes first.
   void rank(std::size_t count, auto&& item_at) {
     by_priority_.resize(count);
     rank_of_.resize(count);
@@ -162,7 +133,7 @@ class ReservationWindows {
   }
 
   std::uint32_t key_of(std::size_t i) const {
-    if constexpr (RankedOperator<Op>) {
+    if constexpr (by_priority) {
       return first_key_ + rank_of_[i];
     } else {
       return first_key_ + static_cast<std::uint32_t>(i);
@@ -178,14 +149,26 @@ class ReservationWindows {
       }
   }
 
-  void plan(Slot& slot, const Item& item, std::size_t i) {
-    slot.item = item;
-    slot.reached.clear();
-    slot.woken.clear();
-    ReachToNote reach{slot.reached};
-    slot.outcome = op_.plan(slot.item, slot.plan, reach) ? Outcome::lost : Outcome::nothing;
-    if (slot.outcome == Outcome::lost)
-      for (const std::uint32_t resource : slot.reached) reserve(holder_of_[resource], key_of(i));
+  void plan(Block& block, const Part& part, auto&& item_at) {
+    block.reached.clear();
+    block.woken.clear();
+    block.count = 0;
+    ReachToNote reach{block.reached};
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      prefetch_after(i, part.count, item_at);
+      if (block.count == block.candidates.size()) block.candidates.emplace_back();
+      Candidate& candidate = block.candidates[block.count];
+      const std::size_t first = block.reached.size();
+      if (!op_.plan(item_at(i), candidate.plan, reach)) {
+        block.reached.resize(first);
+        continue;
+      }
+      candidate.number = static_cast<std::uint32_t>(i);
+      candidate.reached_end = static_cast<std::uint32_t>(block.reached.size());
+      for (std::size_t r = first; r < block.reached.size(); ++r)
+        reserve(holder_of_[block.reached[r]], key_of(i));
+      ++block.count;
+    }
   }
   void reserve(std::uint32_t& holder, std::uint32_t key) const {
     if (executor_.threads() > 1) {
@@ -195,60 +178,74 @@ class ReservationWindows {
     }
   }
 
-  void settle(Slot& slot, std::size_t i) {
-    if (slot.outcome == Outcome::nothing) return;
-    const std::uint32_t key = key_of(i);
-    if (std::all_of(slot.reached.begin(), slot.reached.end(),
-                    [&](std::uint32_t resource) { return holder_of_[resource] == key; }))
-      slot.outcome = Outcome::won;
-  }
-
-  void apply(Slot& slot) {
-    SlotCommit commit{slot};
-    if (slot.outcome == Outcome::won) op_.apply(slot.item, slot.plan, commit);
-  }
-
-  void end_window(std::size_t count) {
-    std::size_t won = 0, lost = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      Slot& slot = slots_[i];
-      if (slot.outcome == Outcome::lost) {
-        ++lost;
-        lost_.push_back(slot.item);
-      } else if (slot.outcome == Outcome::won) {
-        ++won;
-        woken_.insert(woken_.end(), slot.woken.begin(), slot.woken.end());
-        made_.take_back(slot.fresh);
-      }
+  void apply_winners(std::span<Block> blocks, auto&& item_at) {
+    const auto in_each = [&](auto&& work) {
+      parallel_for(executor_, blocks.size(), [&](std::size_t b) { work(blocks[b]); }, {.grain = 1});
+    };
+    const auto apply_to = [&](Block& block) { apply(block, item_at); };
+    if constexpr (makes_things) {
+      in_each([&](Block& block) { settle(block); });
+      made_.number([&](auto&& number) {
+        for (Block& block : blocks)
+          for (Candidate& candidate : block.planned())
+            if (candidate.has_won) number(candidate);
+      });
+      in_each(apply_to);
+    } else {
+      in_each([&](Block& block) {
+        settle(block);
+        apply_to(block);
+      });
     }
-    report_.planned += count;
-    report_.applied += won;
-    report_.lost += lost;
-    if (4 * lost > won) window_ = std::max(least_window, window_ / 2);
-    if (16 * lost < won) window_ = std::min(most_window, window_ * 2);
   }
 
-  RoundsReport finish(std::size_t left) {
-    report_.left = left;
-    made_.close_holes();
-    return report_;
+  void settle(Block& block) const {
+    std::size_t first = 0;
+    for (Candidate& candidate : block.planned()) {
+      const std::uint32_t key = key_of(candidate.number);
+      const std::span reached(block.reached.data() + first,
+                              block.reached.data() + candidate.reached_end);
+      candidate.has_won = std::all_of(reached.begin(), reached.end(), [&](std::uint32_t resource) {
+        return holder_of_[resource] == key;
+      });
+      first = candidate.reached_end;
+    }
   }
 
-  static constexpr std::size_t least_window = 64, first_window = 2048;
-  static constexpr LoopOptions grain{.grain = 32};
+  void apply(Block& block, auto&& item_at) {
+    for (Candidate& candidate : block.planned()) {
+      BlockCommit commit{block, candidate};
+      if (candidate.has_won) op_.apply(item_at(candidate.number), candidate.plan, commit);
+      candidate.woken_end = static_cast<std::uint32_t>(block.woken.size());
+    }
+  }
+
+  void end_block(Block& block, auto&& item_at, auto&& won, auto&& lost) {
+    std::size_t first = 0;
+    for (const Candidate& candidate : block.planned()) {
+      const Item item = item_at(candidate.number);
+      if (candidate.has_won) {
+        ++report_.applied;
+        made_.take_back(candidate.fresh);
+        won(item, std::span<const Item>(block.woken).subspan(first, candidate.woken_end - first));
+      } else {
+        ++report_.lost;
+        lost(item);
+      }
+      first = candidate.woken_end;
+    }
+  }
 
   const Executor& executor_;
   Op& op_;
+  RoundsReport& report_;
   MadeThings<Op> made_;
-  std::vector<Slot> slots_;               // [place in the window]
-  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first item that has reached
-                                          // it
   std::uint32_t highest_key_, first_key_ = highest_key_;
-  std::vector<std::uint64_t> by_priority_;  // of the window, priority and place
-  std::vector<std::uint32_t> rank_of_;      // [place in the window], if there are priorities
-  std::size_t window_ = first_window;
-  std::vector<Item> lost_, woken_;
-  RoundsReport report_;
+  std::vector<std::uint32_t> holder_of_;    // [resource], the key of the first item that has
+                                            // reached it
+  std::vector<std::uint64_t> by_priority_;  // of the window, priority and number
+  std::vector<std::uint32_t> rank_of_;      // [number in the window], if there are priorities
+  std::vector<Block> blocks_;               // of the window
 };
 
 }  // namespace ductile::runtime::detail

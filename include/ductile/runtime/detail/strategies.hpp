@@ -5,11 +5,10 @@
 // Headers of the strategies:
 //
 //   region_rounds          regions; region_map gives the region of a resource
-//   ordered_run            in_order: a plain loop, or
-//     ordered_stream       operators with conflicts()
-//     ordered_windows      all others
-//   reservation_windows    reservations, or
+//   reservation_rounds     reservations, or
 //     level_rounds         operators with levels
+//   ordered_run            in_order, and within a level: a plain loop or windows
+//   reservation_windows    windows of these three
 //   tile_rounds            tiles; ranked_blocks runs them in order
 //   colour_rounds          colours
 // made_things holds the numbers of things that operators make.
@@ -23,7 +22,7 @@
 #include "ductile/runtime/detail/level_rounds.hpp"
 #include "ductile/runtime/detail/ordered_run.hpp"
 #include "ductile/runtime/detail/region_rounds.hpp"
-#include "ductile/runtime/detail/reservation_windows.hpp"
+#include "ductile/runtime/detail/reservation_rounds.hpp"
 #include "ductile/runtime/detail/tile_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
@@ -122,9 +121,9 @@ RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t mos
     return RegionRounds<Op>(executor, op).run(items(), most_rounds);
   if constexpr (S == Strategy::in_order) return run_in_order(executor, op, work, TellNobody());
   if constexpr (S == Strategy::reservations && LevelledOperator<Op>)
-    return LevelRounds<Op>(executor, op).run(items(), most_rounds);
+    return run_by_level(executor, op, items(), most_rounds);
   if constexpr (S == Strategy::reservations && !LevelledOperator<Op>)
-    return ReservationWindows<Op>(executor, op).run(items(), most_rounds);
+    return ReservationRounds<Op>(executor, op).run(items(), most_rounds);
   if constexpr (S == Strategy::tiles) return TileRounds<Op>(executor, op).run(work, most_rounds);
   if constexpr (S == Strategy::colours)
     return ColourRounds<Op>(executor, op).run(work, most_rounds);

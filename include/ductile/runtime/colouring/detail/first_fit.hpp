@@ -33,6 +33,13 @@ struct VertexSet {
   }
 };
 
+/// Vertices [begin, end), to be coloured in ascending order.
+struct Window {
+  std::uint32_t begin, end;
+
+  std::uint32_t size() const { return end - begin; }
+};
+
 /// Thrown if these words cannot hold a colour; the colouring continues, or restarts, with longer
 /// ones.
 struct TooManyColours {};
@@ -74,11 +81,6 @@ class Colours {
   explicit Colours(std::span<Word> words) : words_(words) {}
 
   std::span<Word> words() const { return words_; }
-  /// The same words, with another limit on colours.
-  template <class Other>
-  Colours<Other> as() const {
-    return Colours<Other>(words_);
-  }
 
   std::size_t vertex_count() const { return words_.size(); }
   Word operator[](std::uint32_t v) const {
@@ -169,31 +171,12 @@ decltype(auto) in_registers(const G& graph) {
 /// Vertices ahead: covers the latency of memory at some nanoseconds per vertex.
 constexpr std::size_t prefetch_distance = 32;
 
-/// The graph's own distance if it has one, because its vertices take longer.
-template <Graph G>
-constexpr std::size_t prefetch_distance_of() {
-  if constexpr (requires { G::prefetch_distance; }) {
-    return G::prefetch_distance;
-  } else {
-    return prefetch_distance;
-  }
-}
-
 /// Prefetches the neighbours of the vertex some steps after number i. Inlined always, see CsrGraph.
 template <Graph G>
 [[gnu::always_inline]] inline void prefetch_after(const G& graph, const VertexSet& vertices,
                                                   std::size_t i) {
   if constexpr (PrefetchingGraph<G>)
-    if (i + prefetch_distance_of<G>() < vertices.count)
-      graph.prefetch(vertices[i + prefetch_distance_of<G>()]);
-}
-
-/// The same for vertices in descending order.
-template <Graph G>
-[[gnu::always_inline]] inline void prefetch_before(const G& graph, std::uint32_t v) {
-  if constexpr (PrefetchingGraph<G>)
-    if (v >= prefetch_distance_of<G>())
-      graph.prefetch(v - std::uint32_t{prefetch_distance_of<G>()});
+    if (i + prefetch_distance < vertices.count) graph.prefetch(vertices[i + prefetch_distance]);
 }
 
 /// Calls visit(u) for all of a row, two per iteration. A loop of one per iteration, with half a

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "ductile/runtime/colouring/detail/first_fit.hpp"
-#include "ductile/runtime/colouring/detail/fronts.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
 
@@ -26,7 +25,7 @@ struct Painter {
   std::uint32_t number, newest;
 };
 
-/// A painter that goes up and probably continues elsewhere, at `next`.
+/// A painter that probably continues elsewhere, at `next`.
 struct LeavingPainter : Painter {
   std::uint32_t next;
 };
@@ -36,8 +35,8 @@ struct HeedingPainter : LeavingPainter {
   std::uint64_t heeded;
 };
 
-/// The rows of a window's vertices, up or down; prefetches the next ones.
-template <Graph G, bool ascending, bool leaves>
+/// The rows of a window's vertices; prefetches the next ones.
+template <Graph G, bool leaves>
 class RowsInOrder {
  public:
   RowsInOrder(const G& graph, Window window, std::uint32_t next)
@@ -51,12 +50,8 @@ class RowsInOrder {
   void pass(std::uint32_t) {}
   template <class Visit>
   [[gnu::always_inline]] void visit(std::uint32_t v, Visit see) {
-    if constexpr (ascending) {
-      const bool jumps = leaves && v + prefetch_distance_of<G>() >= end_;
-      prefetch_after(graph_, {graph_.vertex_count()}, jumps ? v + jump_ : v);
-    } else {
-      prefetch_before(graph_, v);
-    }
+    const bool jumps = leaves && v + prefetch_distance >= end_;
+    prefetch_after(graph_, {graph_.vertex_count()}, jumps ? v + jump_ : v);
     visit_in_pairs(graph_, v, see);
   }
 
@@ -68,36 +63,32 @@ class RowsInOrder {
 /// A row ends where the next one begins: one address to load per vertex, not two; and the next data
 /// in memory are the next rows. A leaving painter prefetches, in each step, as far from `next` as
 /// the step is from the window's first vertex.
-template <PackedRowGraph G, bool ascending, bool leaves>
-class RowsInOrder<G, ascending, leaves> {
+template <PackedRowGraph G, bool leaves>
+class RowsInOrder<G, leaves> {
  public:
   RowsInOrder(const G& graph, Window window, std::uint32_t next)
       : graph_(graph),
-        edge_(graph.row_begin(ascending ? window.begin : window.end)),
+        edge_(graph.row_begin(window.begin)),
         jump_(leaves ? address_of(graph.row_begin(next)) - address_of(edge_) : 0) {}
 
   bool is_long(std::size_t v, std::size_t least) const {
-    const std::uint32_t* const other = other_edge(v);
-    return static_cast<std::size_t>(ascending ? other - edge_ : edge_ - other) >= least;
+    return static_cast<std::size_t>(graph_.row_begin(v + 1) - edge_) >= least;
   }
-  void pass(std::size_t v) { edge_ = other_edge(v); }
+  void pass(std::size_t v) { edge_ = graph_.row_begin(v + 1); }
   template <class Visit>
   [[gnu::always_inline]] void visit(std::size_t v, Visit see) {
-    const std::uint32_t* const other = other_edge(v);
-    const std::uint32_t* const edge = std::exchange(edge_, other);
-    prefetch(edge);
-    visit_in_pairs(ascending ? edge : other, ascending ? other : edge, see);
+    const std::uint32_t* const end = graph_.row_begin(v + 1);
+    const std::uint32_t* const begin = std::exchange(edge_, end);
+    prefetch(begin);
+    visit_in_pairs(begin, end, see);
   }
 
  private:
-  const std::uint32_t* other_edge(std::size_t v) const {
-    return graph_.row_begin(ascending ? v + 1 : v);
-  }
   /// May be called outside the array, where it does nothing; pointers may not go there, so the
   /// address is computed as an integer. 1024 to 4096 bytes ahead perform the same.
   [[gnu::always_inline]] void prefetch(const std::uint32_t* edge) const {
     constexpr std::uintptr_t near = 1536;
-    const std::uintptr_t ahead = leaves ? jump_ : ascending ? near : -near;
+    const std::uintptr_t ahead = leaves ? jump_ : near;
     // The check warns of lost optimisations; here the pointer is only prefetched.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
     __builtin_prefetch(reinterpret_cast<const void*>(address_of(edge) + ahead));
@@ -111,12 +102,12 @@ class RowsInOrder<G, ascending, leaves> {
   std::uintptr_t jump_;
 };
 
-template <bool ascending, Graph G, std::derived_from<Painter> P>
+template <Graph G, std::derived_from<Painter> P>
 auto rows_in_order(const G& graph, Window window, P painter) {
   if constexpr (requires { painter.next; }) {
-    return RowsInOrder<G, ascending, true>(graph, window, painter.next);
+    return RowsInOrder<G, true>(graph, window, painter.next);
   } else {
-    return RowsInOrder<G, ascending, false>(graph, window, window.end);
+    return RowsInOrder<G, false>(graph, window, window.end);
   }
 }
 
@@ -152,19 +143,19 @@ template <class Rows, class Width>
   return bits;
 }
 
-/// First-fit of the vertices of a window, in its order. Calls saw_others(v) if v sees a neighbour
+/// First-fit of the vertices of a window, in order. Calls saw_others(v) if v sees a neighbour
 /// that is `waiting` or has another's mark; if that colours v itself, it is also called for
 /// vertices with many neighbours, before reading them. Throws TooManyColours: vertices before then
 /// show their colours, later ones what they showed before. Not inlined, so that the loop gets its
 /// registers; aligned, because on Zen 4 first-fit takes up to a third longer if the loop's end
 /// crosses a cache line.
-template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, class SawOthers>
+template <class Width, Graph G, std::derived_from<Painter> P, class SawOthers>
 [[gnu::noinline, gnu::aligned(64)]] void first_fit_in_order(const G& graph, Colours<Width> colours,
                                                             Window window, P painter,
                                                             SawOthers saw_others) {
   using Word = typename Width::Word;
   using Seen = TakenColours<Colours<Width>>;
-  auto rows = rows_in_order<ascending>(graph, window, painter);
+  auto rows = rows_in_order(graph, window, painter);
   const Word mark = Colours<Width>::mark(painter.newest);
   std::uint64_t mark_bit = std::uint64_t{1} << (mark & 63U);
   asm("" : "+r"(mark_bit));  // hides the value from GCC, which would otherwise branch on it
@@ -176,7 +167,7 @@ template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, cl
   Word newest = Colours<Width>::none;  // the colour of the newest vertex
   std::uint64_t newest_bit = 0;        // the bit of `newest` in TakenColours
   const auto show_newest = [&](std::size_t v, bool is_first) {
-    if (!is_first) colours.set(ascending ? v - 1 : v + 1, newest);
+    if (!is_first) colours.set(v - 1, newest);
   };
   const auto colour = [&](std::size_t v, bool is_first) __attribute__((always_inline)) {
     const auto id = static_cast<std::uint32_t>(v);
@@ -205,13 +196,9 @@ template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, cl
       if (sees_others) [[unlikely]]
         saw_others(id);
   };
-  colour(window[0], true);
-  if constexpr (ascending) {
-    for (std::size_t v = std::size_t{window.begin} + 1; v < window.end; ++v) colour(v, false);
-  } else {
-    for (std::size_t v = window.end - 1; v-- > window.begin;) colour(v, false);
-  }
-  colours.set(window[window.size() - 1], newest);
+  colour(window.begin, true);
+  for (std::size_t v = std::size_t{window.begin} + 1; v < window.end; ++v) colour(v, false);
+  colours.set(window.end - 1, newest);
 }
 
 /// First-fit in order, on the calling thread.
@@ -228,8 +215,7 @@ struct Serial {
         const Window rest{static_cast<std::uint32_t>(i),
                           static_cast<std::uint32_t>(vertices.count)};
         if (rest.size() > 0)
-          first_fit_in_order<true>(graph, colours, rest, Painter{Width::marks, 0},
-                                   [](std::uint32_t) {});
+          first_fit_in_order(graph, colours, rest, Painter{Width::marks, 0}, [](std::uint32_t) {});
         return;
       }
     }

@@ -17,7 +17,6 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/colouring/detail/first_fit.hpp"
-#include "ductile/runtime/colouring/detail/fronts.hpp"
 #include "ductile/runtime/colouring/detail/in_order.hpp"
 #include "ductile/runtime/colouring/detail/speculative_colouring.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
@@ -109,7 +108,7 @@ class PartsRun {
     const Colours<Width> colours = p > 0 ? Colours<Width>(words) : colours_;
     std::vector<std::uint32_t>& unsure = parts_[p].unsure;
     const auto note = [&](std::uint32_t v) __attribute__((noinline)) { unsure.push_back(v); };
-    first_fit_in_order<true>(graph_, colours, part, Painter{newest_mark, newest_mark}, note);
+    first_fit_in_order(graph_, colours, part, Painter{newest_mark, newest_mark}, note);
   }
 
   static void mark(std::vector<std::uint64_t>& bits, std::uint32_t v, bool is_marked = true) {
@@ -158,8 +157,8 @@ class PartsRun {
 
   void colour_rest(std::uint32_t begin) {
     colours_.fill(begin, n_, Colours<Width>::none);
-    first_fit_in_order<true>(graph_, colours_, Window{begin, static_cast<std::uint32_t>(n_)},
-                             Painter{Width::marks, newest_mark}, [](std::uint32_t) {});
+    first_fit_in_order(graph_, colours_, Window{begin, static_cast<std::uint32_t>(n_)},
+                       Painter{Width::marks, newest_mark}, [](std::uint32_t) {});
   }
 
   const Executor& executor_;

@@ -26,11 +26,8 @@
 
 namespace ductile::runtime::detail {
 
-/// An object rather than a function, so that it is inlined when passed on.
-struct Outranks {
-  bool operator()(std::uint32_t u, std::uint32_t v) const { return mix32(u) < mix32(v); }
-};
-inline constexpr Outranks outranks;
+/// Has u the higher priority?
+inline bool outranks(std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); }
 
 /// Number of neighbours that each vertex waits for, by vertex.
 class AwaitedByVertex {
@@ -61,17 +58,16 @@ class AwaitedByPlace {
   std::vector<std::uint32_t> count_;
 };
 
-/// Removes the colours of vertices and gives them new ones. `before(u, v)` is a strict order.
-template <class Awaited, class Width, Graph G, class Before>
+/// Removes the colours of vertices and gives them new ones.
+template <class Awaited, class Width, Graph G>
 class PriorityRun {
  public:
   PriorityRun(const Executor& executor, const G& graph, std::span<const std::uint32_t> vertices,
-              Colours<Width> colours, const Before& before)
+              Colours<Width> colours)
       : executor_(executor),
         graph_(graph),
         vertices_(vertices),
         colours_(colours),
-        before_(before),
         awaited_(colours.vertex_count(), vertices),
         free_(executor) {}
 
@@ -113,7 +109,7 @@ class PriorityRun {
       seen.add(colour);
       if (colour != Colours<Width>::waiting || u == v) return;
       missed = true;
-      if (before_(v, u)) atomic_count(awaited_[u]);
+      if (outranks(v, u)) atomic_count(awaited_[u]);
     });
     if (!missed) colours_.set(v, least_free(graph_, v, colours_, seen));
   }
@@ -146,22 +142,14 @@ class PriorityRun {
   const G& graph_;
   std::span<const std::uint32_t> vertices_;
   Colours<Width> colours_;
-  const Before& before_;
   Awaited awaited_;               // counts of neighbours that the given vertices wait for
   Worklist<std::uint32_t> free_;  // vertices that wait for nobody
 };
 
-template <class Awaited = AwaitedByVertex, class Width, Graph G, class Before>
+template <class Awaited, class Width, Graph G>
 void colour_by_priority(const Executor& executor, const G& graph,
-                        std::span<const std::uint32_t> vertices, Colours<Width> colours,
-                        const Before& before) {
-  PriorityRun<Awaited, Width, G, Before>(executor, graph, vertices, colours, before).run();
-}
-
-inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
-  std::vector<std::uint32_t> all(vertices.count);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = vertices[i];
-  return all;
+                        std::span<const std::uint32_t> vertices, Colours<Width> colours) {
+  PriorityRun<Awaited, Width, G>(executor, graph, vertices, colours).run();
 }
 
 struct ByPriority {
@@ -171,30 +159,9 @@ struct ByPriority {
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Width> colours) {
-    colour_by_priority(executor, graph, listed(vertices), colours, outranks);
-  }
-};
-
-/// Greater degrees first, ties by hash.
-struct ByDegree {
-  static constexpr std::uint32_t marks = 0;
-  static constexpr bool bound_by_memory = true;
-
-  template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet vertices,
-                  Colours<Width> colours) {
-    std::vector<std::uint32_t> degree_of(colours.vertex_count());
-    parallel_for(executor, vertices.count,
-                 [&](std::size_t i) {
-                   std::uint32_t degree = 0;
-                   graph.for_each_neighbour(vertices[i], [&](std::uint32_t) { ++degree; });
-                   degree_of[vertices[i]] = degree;
-                 },
-                 {.grain = 256, .serial_below = 1024});
-    const auto before = [&](std::uint32_t u, std::uint32_t v) {
-      return degree_of[u] != degree_of[v] ? degree_of[u] > degree_of[v] : outranks(u, v);
-    };
-    colour_by_priority(executor, graph, listed(vertices), colours, before);
+    std::vector<std::uint32_t> listed(vertices.count);
+    for (std::size_t i = 0; i < listed.size(); ++i) listed[i] = vertices[i];
+    colour_by_priority<AwaitedByVertex>(executor, graph, listed, colours);
   }
 };
 

@@ -2,7 +2,7 @@
 /// Speculative parallel colouring: every vertex takes the lowest colour it sees free, without
 /// waiting; neighbours coloured at the same moment may clash, and then one of them is recoloured.
 /// Rounds continue until there is no clash. The colours depend on timing.
-/// Threads take windows of vertices, from their own part as long as it lasts, and mark them first.
+/// Threads take windows of vertices and mark them first.
 /// Of two vertices that clash, at least one saw the other's mark, because threads mark before they
 /// read: so only vertices that saw a mark are checked again.
 #pragma once
@@ -11,11 +11,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
-#include <vector>
 
 #include "ductile/runtime/colouring/detail/first_fit.hpp"
-#include "ductile/runtime/colouring/detail/fronts.hpp"
 #include "ductile/runtime/colouring/detail/in_order.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -31,73 +28,36 @@ constexpr LoopOptions speculative_loop{.grain = 256, .serial_below = 1024};
 /// fewer colours to TakenColours.
 constexpr std::uint32_t speculative_marks = 16;
 
-/// Words of a byte that replace short ones when those do not have enough colours.
-template <class Width>
-using LongOf = std::conditional_t<sizeof(typename Width::Word) == 1, OneByte<Width::marks>, Width>;
-
-/// The first round, which colours all vertices. If short words do not have enough colours, it
-/// continues with long ones. Threads that still read those as short words take them for lower
-/// colours or for marks: they may skip free colours, or find too early that short words overflow,
-/// but never take a neighbour's colour.
+/// The first round, which colours all vertices.
 template <class Width, Graph G>
 class FirstRound {
  public:
-  using Long = LongOf<Width>;
-
   FirstRound(const Executor& executor, const G& graph, Colours<Width> colours)
       : executor_(executor), graph_(graph), colours_(colours), suspects_(executor) {}
 
   /// Returns vertices in any order; of any two that clash, at least one is included.
   UnsetVector<std::uint32_t> run() {
-    Fronts fronts(graph_, static_cast<std::uint32_t>(executor_.threads()));
-    parallel_for(executor_, fronts.seeds().size(),
-                 [&](std::size_t i) { colour(fronts.seeds()[i]); }, {.grain = 1});
-    parallel_for(executor_, fronts.count(),
-                 [&](std::size_t i) {
-                   while (const auto window = fronts[i].take_first()) colour(*window);
-                   while (Front* const other = fronts.slowest())
-                     while (const auto window = other->take_last()) colour(*window);
-                 },
-                 {.grain = 1});
+    const auto n = std::uint64_t{graph_.vertex_count()};
+    const auto threads = static_cast<std::uint64_t>(executor_.threads());
+    parallel_for_blocks(
+        executor_, n, std::clamp<std::uint64_t>(n / (32 * threads), 64, 1024),
+        [&](std::size_t, std::size_t begin, std::size_t end) {
+          colour({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+        });
     suspects_.collect();
     return suspects_.take();
   }
 
  private:
   void colour(Window window) {
-    const auto mark = Colours<Width>::mark(number());
-    colours_.fill(window.begin, window.end, mark);
+    colours_.fill(window.begin, window.end, Colours<Width>::mark(number()));
     // Pairs with the fence of any other window: one of the two sees the other's marks or colours.
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    std::uint32_t done = 0;
-    if constexpr (!std::is_same_v<Width, Long>) {
-      // Relaxed: a thread that does not see it yet finds out for itself.
-      if (!long_.load(std::memory_order_relaxed)) {
-        try {
-          return colour_in_order<Width>(window, 0);
-        } catch (const TooManyColours&) {
-          long_.store(true, std::memory_order_relaxed);
-          while (colours_[window[done]] != mark) ++done;
-        }
-      }
-    }
-    colour_in_order<Long>(window, done);
-  }
-
-  /// Colours the vertices of a window except the first `done`.
-  template <class As>
-  void colour_in_order(Window window, std::uint32_t done) {
-    (window.ascending ? window.begin : window.end) += window.ascending ? done : -done;
     // Threads that share a mark cannot tell their vertices from the other's.
     const bool alone = executor_.threads() <= static_cast<int>(speculative_marks);
     const Painter painter{alone ? number() : Width::marks, number() + speculative_marks};
-    const auto suspect = [this](std::uint32_t v) { this->suspect(v); };
-    const Colours<As> colours = colours_.template as<As>();
-    if (window.ascending) {
-      first_fit_in_order<true>(graph_, colours, window, painter, suspect);
-    } else {
-      first_fit_in_order<false>(graph_, colours, window, painter, suspect);
-    }
+    first_fit_in_order(graph_, colours_, window, painter,
+                       [this](std::uint32_t v) { this->suspect(v); });
   }
 
   [[gnu::noinline]] void suspect(std::uint32_t v) { suspects_.mine().append(v); }
@@ -109,7 +69,6 @@ class FirstRound {
   const Executor& executor_;
   const G& graph_;
   Colours<Width> colours_;
-  std::atomic<bool> long_{false};  // there are more colours than short words can hold
   Worklist<std::uint32_t> suspects_;
 };
 
@@ -163,12 +122,11 @@ void recolour_clashing(const Executor& executor, const G& graph, UnsetVector<std
 template <Recolouring when>
 struct Speculation {
   static constexpr std::uint32_t marks = 2 * speculative_marks;
-  static constexpr bool lengthens = true;  ///< continues with long words after short ones
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
     recolour_clashing<when>(executor, graph, FirstRound<Width, G>(executor, graph, words).run(),
-                            words.template as<LongOf<Width>>());
+                            words);
   }
 };
 

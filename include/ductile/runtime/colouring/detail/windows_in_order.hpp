@@ -14,7 +14,6 @@
 #include <thread>
 
 #include "ductile/runtime/colouring/detail/first_fit.hpp"
-#include "ductile/runtime/colouring/detail/fronts.hpp"
 #include "ductile/runtime/colouring/detail/in_order.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -96,9 +95,9 @@ class WindowsRun {
     for (std::uint32_t begin = all.begin; begin < all.end; begin += short_window) {
       const Window piece{begin, std::min(begin + short_window, all.end)};
       if (size_ > short_window && number > 0) prefetch_colours(piece.begin - size_);
-      first_fit_in_order<true>(graph_, colours_, piece,
-                               HeedingPainter{{{mark, window_marks + mark}, after(piece)}, earlier},
-                               colour_late);
+      first_fit_in_order(graph_, colours_, piece,
+                         HeedingPainter{{{mark, window_marks + mark}, after(piece)}, earlier},
+                         colour_late);
     }
   }
 
