@@ -91,13 +91,15 @@ std::size_t Adapter<Dim, Space>::pass(const Phase& phase) {
 }
 
 /// Moves and swaps keep lengths at the end; in a mesh that did not come adapted, not yet the first
-/// time.
+/// time, so there is a second time.
 template <int Dim, int Space>
 void Adapter<Dim, Space>::follow(const Phase& phase) {
   work_.begin(phase, came_adapted_);
   for (int times = 0; times < phase.passes; ++times) {
-    work_.go_for(phase.aim, phase.aim == Aim::finish && (came_adapted_ || times > 0));
-    if (work_.share(pass(phase)) < phase.calm) break;
+    const bool keeps_lengths = phase.aim == Aim::finish && (came_adapted_ || times > 0);
+    work_.go_for(phase.aim, keeps_lengths);
+    const bool is_calm = work_.share(pass(phase)) < phase.calm;
+    if (is_calm && (keeps_lengths || phase.aim != Aim::finish)) break;
   }
 }
 

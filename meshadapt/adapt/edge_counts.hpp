@@ -27,6 +27,24 @@ Counts summed(const runtime::Executor& executor, std::size_t n, auto&& counts_of
                                   });
 }
 
+/// The share of edges that are longer than a limit, an edge counted once for each element around
+/// it.
+template <int Dim, int Space>
+double share_of_long_edges(const runtime::Executor& executor, const Mesh<Dim, Space>& mesh,
+                           double limit) {
+  const auto [all, longer] = summed(executor, mesh.element_slots(), [&](std::size_t e) {
+    Counts counts{};
+    if (!mesh.alive(static_cast<ElementId>(e))) return counts;
+    for (std::size_t k = 0; k < Simplex<Dim>::edges; ++k) {
+      const auto [a, b] = ends_of_edge<Dim>(mesh.corners_of[e], k);
+      ++counts[0];
+      counts[1] += !shorter_than(mesh.site_of[a], mesh.site_of[b], limit);
+    }
+    return counts;
+  });
+  return static_cast<double>(longer) / static_cast<double>(std::max<std::size_t>(1, all));
+}
+
 /// The sums of counts_of(v, w) over edges: each_end(v, append) appends the other ends of those at
 /// v, some of them several times.
 template <int Dim, int Space>

@@ -86,9 +86,12 @@ class Attempt {
   /// They come from the source, unless the last ones grow too fast on this mesh. Nothing if the
   /// mesh is final.
   std::optional<Start<Dim, Space>> next(MetricSource& source) {
-    if (pass_ > 0)
+    if (pass_ > 0) {
       if (auto start = with_growth_limited()) return start;
+      if (auto start = farther()) return start;
+    }
     growths_ = 0;
+    share_long_ = 1;
     const AnyField* metric = source.next(
         {executor_, pass_, input_, [this]() -> const MeshWithMetric& { return copy(); }});
     if (metric == nullptr && pass_ == 0)
@@ -116,6 +119,7 @@ class Attempt {
   void take_back(Effort effort) { take_back(effort, options_.make); }
   void take_back(Effort effort, MakeMeshOptions make) {
     effort_ = effort;
+    share_long_ = 1;
     options_.make = std::move(make);
     report_ = {};
     pass_ = 0;
@@ -177,6 +181,32 @@ class Attempt {
     return neighbours;
   }
 
+  /// A metric whose sizes differ extremely may not be reached at once: the next pass starts from
+  /// the adapted mesh, as long as many edges are too long and each pass leaves clearly fewer.
+  std::optional<Start<Dim, Space>> farther() {
+    constexpr double many = 0.25, fewer = 0.9;
+    if (!options_.insert || options_.approach_only ||
+        options_.iterations < AdaptOptions{}.iterations)
+      return std::nullopt;
+    const double share = share_of_long_edges(executor_, mesh_, options_.rules.long_edge);
+    if (share < many || share > fewer * std::exchange(share_long_, share)) return std::nullopt;
+    renumber(executor_, mesh_);
+    return from_here(metrics_here());
+  }
+
+  std::vector<Metric<Space>> metrics_here() const {
+    auto metric_of = runtime::make_vector<Metric<Space>>(executor_, mesh_.vertex_slots());
+    runtime::parallel_for(executor_, metric_of.size(),
+                          [&](std::size_t v) { metric_of[v] = mesh_.site_of[v].metric; });
+    return metric_of;
+  }
+
+  Start<Dim, Space> from_here(std::vector<Metric<Space>> metric_of) {
+    expect_possible(executor_, mesh_, options_, metric_of, name_);
+    Neighbours<Dim> neighbours = neighbours_of(executor_, mesh_);
+    return {std::move(mesh_), std::move(neighbours), std::move(metric_of)};
+  }
+
   /// Growth is limited along edges, of which a coarse mesh has few. Limits the metrics of the
   /// adapted mesh along its edges; nothing if that asks for hardly more elements.
   std::optional<Start<Dim, Space>> with_growth_limited() {
@@ -185,9 +215,7 @@ class Attempt {
     if (!limits_growth(options_) || !options_.insert || growths_ == most_times) return std::nullopt;
     ++growths_;
     renumber(executor_, mesh_);
-    auto metric_of = runtime::make_vector<Metric<Space>>(executor_, mesh_.vertex_slots());
-    runtime::parallel_for(executor_, metric_of.size(),
-                          [&](std::size_t v) { metric_of[v] = mesh_.site_of[v].metric; });
+    auto metric_of = metrics_here();
     const double before = complexity_of_demand(executor_, mesh_, metric_of);
     // A geometry may have features between the vertices that were asked.
     if (options_.make.geometry)
@@ -195,9 +223,7 @@ class Attempt {
     else
       limit_growth(executor_, mesh_, options_, metric_of);
     if (complexity_of_demand(executor_, mesh_, metric_of) < much * before) return std::nullopt;
-    expect_possible(executor_, mesh_, options_, metric_of, name_);
-    Neighbours<Dim> neighbours = neighbours_of(executor_, mesh_);
-    return Start<Dim, Space>{std::move(mesh_), std::move(neighbours), std::move(metric_of)};
+    return from_here(std::move(metric_of));
   }
 
   const Executor& executor_;
@@ -207,6 +233,7 @@ class Attempt {
   Effort effort_ = Effort::as_needed;  ///< for the input
   int pass_ = 0;
   int growths_ = 0;                     ///< times in a row that growth was limited
+  double share_long_ = 1;               ///< of the edges, before the last pass of farther()
   Mesh<Dim, Space> mesh_;               ///< as it stands between passes
   std::string name_;                    ///< of the metric
   std::optional<MeshWithMetric> copy_;  ///< of the mesh

@@ -23,57 +23,130 @@ Vector<Dim> centre_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
   return centre;
 }
 
+/// Finds the sheets of facets, see ReferenceSurface::sheets_of().
+template <int Dim>
+class SheetFinder {
+ public:
+  SheetFinder(const ReferenceSurface<Dim>& reference, const Mesh<Dim>& mesh,
+              const std::vector<TaggedFacet<Dim>>& facets)
+      : reference_(reference),
+        sheets_(reference.surface->facets),
+        mesh_(mesh),
+        facets_(facets),
+        sheet_of_(facets.size(), none),
+        distance_of_(facets.size()) {}
+
+  std::vector<std::uint32_t> find(const runtime::Executor& executor) {
+    runtime::parallel_for(executor, facets_.size(), [&](std::size_t f) {
+      if (facets_[f].data.required) return;
+      const auto nearest = nearest_to(f);
+      if (!nearest) return;
+      sheet_of_[f] = nearest->sheet;
+      distance_of_[f] = is_curved(nearest->sheet) ? nearest->distance : 0;
+    });
+    if (!reference_.in_parts) expect_same_curves();
+    take_input_facets();
+    return std::move(sheet_of_);
+  }
+
+ private:
+  using Nearest = typename Surface<Dim>::Facets::Nearest;
+
+  bool is_curved(std::uint32_t sheet) const {
+    return sheet != none && reference_.is_smooth[sheet] != 0;
+  }
+  double fits() const { return fitting * sheets_.tolerance(); }
+  Vector<Dim> centre(std::size_t f) const {
+    return centre_of<Dim>(mesh_, outward_corners(mesh_, facets_[f]));
+  }
+  Vector<Dim> direction(std::size_t f) const {
+    return unit(normal_of<Dim>(mesh_, outward_corners(mesh_, facets_[f])));
+  }
+
+  std::optional<Nearest> nearest_to(std::size_t f) const {
+    const std::int32_t reference = facets_[f].data.reference;
+    auto nearest = sheets_.nearest(centre(f), direction(f), reference_.reference_of, reference,
+                                   near * sheets_.tolerance());
+    if (!nearest || (is_curved(nearest->sheet) && nearest->distance > fits())) {
+      const auto noise = sheets_.nearest(centre(f), fits());
+      if (noise && reference_.reference_of[noise->sheet] == reference) nearest = noise;
+    }
+    return nearest;
+  }
+
+  /// Throws if no facet stands for a curved sheet, unless the mesh has lost all curved boundaries,
+  /// for example to a cut: then other facets have their sheets, none has the reference of a curved
+  /// one without standing for it, and few lie on curved ones.
+  void expect_same_curves() const {
+    const auto& smooth = reference_.is_smooth;
+    const auto& reference_of = reference_.reference_of;
+    const auto curved = [&](std::uint32_t sheet) { return is_curved(sheet); };
+    if (std::none_of(smooth.begin(), smooth.end(), [](auto is) { return is != 0; }) ||
+        std::any_of(sheet_of_.begin(), sheet_of_.end(), curved))
+      return;
+    std::size_t known = 0, free = 0, untied = 0, lost = 0, astray = 0;
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      if (facets_[f].data.required) continue;
+      ++free;
+      const std::int32_t reference = facets_[f].data.reference;
+      const auto there = sheets_.nearest(centre(f), fits());
+      known += there && !is_curved(there->sheet) && reference_of[there->sheet] == reference;
+      if (sheet_of_[f] != none) continue;
+      ++untied;
+      lost += there && is_curved(there->sheet);
+      for (std::size_t sheet = 0; sheet < smooth.size() && astray == 0; ++sheet)
+        astray += smooth[sheet] != 0 && reference_of[sheet] == reference;
+    }
+    if (free == 0 || (known > 0 && astray == 0 && 2 * lost <= untied)) return;
+    throw InputError("geometry: none of the facets of the mesh is within " +
+                     number(near * sheets_.tolerance()) +
+                     " of one of its curved boundaries with the same reference; expected the "
+                     "geometry of the same domain");
+  }
+
+  /// The model may bulge far from the facets that it was made from. Facets of the mesh that still
+  /// lie on these belong to them; others that are far from the model are refused.
+  void take_input_facets() {
+    std::vector<std::size_t> far;
+    for (std::size_t f = 0; f < facets_.size(); ++f)
+      if (distance_of_[f] > fits()) far.push_back(f);
+    std::stable_sort(far.begin(), far.end(), [&](std::size_t a, std::size_t b) {
+      return distance_of_[a] > distance_of_[b];
+    });
+    for (const std::size_t f : far) {
+      const auto input = sheets_.nearest_facet(centre(f), direction(f), reference_.reference_of,
+                                               facets_[f].data.reference, 2 * distance_of_[f]);
+      if (!input || input->distance > fits()) refuse_facet(f);
+      sheet_of_[f] = input->sheet;
+    }
+  }
+
+  [[noreturn]] void refuse_facet(std::size_t f) const {
+    std::string vertices;
+    for (const VertexId v : facets_[f].corners) vertices += " " + std::to_string(v + 1);
+    throw InputError("the boundary's facet with the vertices" + vertices + " is " +
+                     number(distance_of_[f]) + " from the geometry, of which the tolerance is " +
+                     number(sheets_.tolerance()) +
+                     "; is the geometry that of another domain, or was the mesh adapted without "
+                     "it or with a larger tolerance?");
+  }
+
+  const ReferenceSurface<Dim>& reference_;
+  const typename Surface<Dim>::Facets& sheets_;
+  const Mesh<Dim>& mesh_;
+  const std::vector<TaggedFacet<Dim>>& facets_;
+  std::vector<std::uint32_t> sheet_of_;  // [facet]
+  std::vector<double> distance_of_;      // [facet], from its sheet; 0 if that is flat
+};
+
 }  // namespace
 
 template <int Dim>
 std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
     const runtime::Executor& executor, const Mesh<Dim>& mesh,
     const std::vector<TaggedFacet<Dim>>& facets) const {
-  std::vector<std::uint32_t> sheet_of(facets.size(), none);
-  if (!surface) return sheet_of;
-  const double tolerance = surface->facets.tolerance();
-  std::vector<double> distance_of(facets.size());
-  runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
-    if (facets[f].data.required) return;
-    const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[facets[f].element], facets[f].facet);
-    const Vector<Dim> normal = normal_of<Dim>(mesh, corners);
-    const Vector<Dim> centre = centre_of<Dim>(mesh, corners);
-    const std::int32_t reference = facets[f].data.reference;
-    auto nearest =
-        surface->facets.nearest(centre, unit(normal), reference_of, reference, near * tolerance);
-    if (!nearest || (is_smooth[nearest->sheet] != 0 && nearest->distance > fitting * tolerance)) {
-      const auto noise = surface->facets.nearest(centre, fitting * tolerance);
-      if (noise && reference_of[noise->sheet] == reference) nearest = noise;
-    }
-    if (!nearest) return;
-    sheet_of[f] = nearest->sheet;
-    distance_of[f] = is_smooth[nearest->sheet] != 0 ? nearest->distance : 0;
-  });
-  const auto is_curved = [&](std::uint32_t sheet) {
-    return sheet != none && is_smooth[sheet] != 0;
-  };
-  const bool bends =
-      std::any_of(is_smooth.begin(), is_smooth.end(), [](std::uint8_t is) { return is != 0; });
-  const bool is_free = std::any_of(facets.begin(), facets.end(), [](const TaggedFacet<Dim>& facet) {
-    return !facet.data.required;
-  });
-  if (!in_parts && bends && is_free && std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
-    throw InputError("geometry: none of the facets of the mesh is within " +
-                     number(near * tolerance) +
-                     " of one of its curved boundaries with the same reference; expected the "
-                     "geometry of the same domain");
-  const auto farthest = std::max_element(distance_of.begin(), distance_of.end());
-  if (farthest != distance_of.end() && *farthest > fitting * tolerance) {
-    const auto f = static_cast<std::size_t>(farthest - distance_of.begin());
-    std::string vertices;
-    for (const VertexId v : facets[f].corners) vertices += " " + std::to_string(v + 1);
-    throw InputError("the boundary's facet with the vertices" + vertices + " is " +
-                     number(*farthest) + " from the geometry, of which the tolerance is " +
-                     number(tolerance) +
-                     "; is the geometry that of another domain, or was the mesh adapted without "
-                     "it or with a larger tolerance?");
-  }
-  return sheet_of;
+  if (!surface) return std::vector<std::uint32_t>(facets.size(), none);
+  return SheetFinder<Dim>(*this, mesh, facets).find(executor);
 }
 
 template <int Dim>

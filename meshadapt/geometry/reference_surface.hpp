@@ -26,11 +26,11 @@ struct ReferenceSurface {
 
   /// For each facet the sheet that is closest to its centre, of the same reference and turned by
   /// less than 60 degrees against it; where that one is curved and more than twice the tolerance
-  /// away, the one that is not, however it is turned: there facets are noise. `none` if there is
-  /// none near, or the facet is required and stays as it is. Throws InputError if no facet has a
-  /// curved one, though there are such and facets that are not required, unless meshes are parts;
-  /// and if one is more than twice the tolerance away from its curved sheet. Thread safety: one
-  /// caller; runs on the executor.
+  /// away, the one that is not, however it is turned, because facets there are noise, or the one
+  /// whose own facet is not. `none` if there is none near, or the facet is required and stays as it
+  /// is. Throws InputError if a facet is more than twice the tolerance away from its curved sheet;
+  /// and if no facet has a curved one, although there are some, the boundary may change and has not
+  /// lost them, unless meshes are parts. Thread safety: one caller; runs on the executor.
   std::vector<std::uint32_t> sheets_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                        const std::vector<TaggedFacet<Dim>>& facets) const;
 

@@ -350,6 +350,26 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& 
   });
 }
 
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest_facet(const Vector<Dim>& point, const Vector<Dim>& direction,
+                                         std::span<const std::int32_t> reference_of,
+                                         std::int32_t reference, double reach) const
+    -> std::optional<Nearest> {
+  std::optional<Nearest> best;
+  each_meeting(grown(box_around(std::array{point}), reach), [&](std::uint32_t part) {
+    const std::uint32_t sheet = parts_[part].sheet;
+    const bool two_sided = parts_[part].two_sided;
+    const Points facet = facet_of(part);
+    const Vector<Dim> normal = direction_of(facet), there = closest_point(facet, point);
+    const double cosine = dot(direction, normal), distance = norm(there - point);
+    if (reference_of[sheet] != reference || !((two_sided ? std::abs(cosine) : cosine) > 0.5) ||
+        (best && distance >= best->distance))
+      return;
+    best = {sheet, origin_of_[part].facet, distance, there, normal};
+  });
+  return best;
+}
+
 template class Sheets<2, 2>;
 template class Sheets<3, 2>;
 template class Sheets<3, 3>;

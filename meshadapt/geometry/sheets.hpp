@@ -113,6 +113,10 @@ class Sheets {
   std::optional<Nearest> nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
                                  std::span<const std::int32_t> reference_of, std::int32_t reference,
                                  double reach) const;
+  /// The same of the flat facets that the sheets were made from, if they have a part in reach.
+  std::optional<Nearest> nearest_facet(const Vector<Dim>& point, const Vector<Dim>& direction,
+                                       std::span<const std::int32_t> reference_of,
+                                       std::int32_t reference, double reach) const;
 
  private:
   struct Tree;

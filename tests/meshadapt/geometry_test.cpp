@@ -14,6 +14,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/level_set.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "support/bits.hpp"
@@ -304,6 +305,90 @@ TEST(Geometry, OfACircleOnAFlatSideFitsItsMesh) {
   const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.2), options);
   EXPECT_EQ(test::joined(check_adapted(executor, mesh, result.mesh, 0.01)), "");
   EXPECT_LT(result.mesh.triangles.size(), mesh.triangles.size());
+}
+
+/// A plate, thin or not, with a rough boundary of one reference, all of whose elements are valid.
+AnyMesh rough_plate(int dimension, test::Random& random) {
+  const auto d = static_cast<std::size_t>(dimension);
+  for (;;) {
+    AnyMesh mesh = test::make_grid(test::unit_grid(dimension, 2 + static_cast<int>(random() % 3)));
+    const double thickness = std::pow(10, test::uniform(random, -1.5, 0));
+    const double waves = test::uniform(random, 1, 8), height = test::uniform(random, 0, 0.2);
+    const double rough = test::uniform(random, 0, 0.2);
+    for (std::size_t at = 0; at < mesh.coordinates.size(); at += d) {
+      double& top = mesh.coordinates[at + d - 1];
+      top = thickness * (top + rough * test::uniform(random, -1, 1)) +
+            height * std::sin(waves * mesh.coordinates[at]);
+    }
+    auto& references = dimension == 2 ? mesh.edges.reference : mesh.triangles.reference;
+    std::fill(references.begin(), references.end(), 1);
+    if (check_mesh(Executor({.threads = 1}), mesh).empty()) return mesh;
+  }
+}
+
+TEST_P(GeometryOf, AnyMeshFitsItself) {
+  const Executor executor({.threads = 1});
+  test::Random random(5);
+  for (int trial = 0; trial < 60; ++trial) {
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    const AnyMesh mesh = rough_plate(dimension(), random);
+    AdaptOptions options;
+    options.make.hausdorff_tolerance = std::pow(10, test::uniform(random, -3, -1));
+    options.make.ridge_angle = test::uniform(random, 20, 89);
+    options.make.geometry = std::make_shared<const Geometry>(
+        executor, mesh,
+        GeometryOptions{.tolerance = options.make.hausdorff_tolerance,
+                        .ridge_angle = options.make.ridge_angle});
+    AdaptedMesh adapted;
+    ASSERT_NO_THROW(adapted = adapt(executor, mesh, constant_metric(mesh, 0.3), options));
+    EXPECT_EQ(
+        test::joined(check_adapted(executor, mesh, adapted.mesh, options.make.hausdorff_tolerance)),
+        "");
+    EXPECT_NO_THROW(adapt(executor, adapted.mesh, constant_metric(adapted.mesh, 0.2), options));
+  }
+}
+
+/// A ball inside of a box, whose surface is an interface that is not listed, is cut by a plane, so
+/// that the regions are those on its sides: nothing that is curved is left.
+TEST_P(GeometryOf, ACutMeshMayHaveLostItsCurves) {
+  const Executor executor({.threads = 2});
+  test::Random random(9);
+  const auto d = static_cast<std::size_t>(dimension());
+  const int n = dimension() == 2 ? 16 : 8, quarter = n / 4;
+  test::Grid grid = test::unit_grid(dimension(), n);
+  grid.region = [&](const test::Cell& cell) {
+    const auto is_inside = [&](int c) { return c >= quarter && c < n - quarter; };
+    return std::all_of(cell.begin(), cell.begin() + dimension(), is_inside) ? 2 : 1;
+  };
+  AnyMesh mesh = test::make_grid(grid, false);
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += d) {
+    double most = 0, square = 0;
+    for (std::size_t i = 0; i < d; ++i) {
+      double& x = mesh.coordinates[at + i];
+      x = 2 * x - 1;
+      most = std::max(most, std::abs(x));
+      square += x * x;
+    }
+    const double round = most / std::sqrt(std::max(square, 1e-300));
+    const double share = std::clamp(2 * most - 1, 0.0, 1.0);  // the ball's radius is 0.5
+    for (std::size_t i = 0; i < d; ++i) mesh.coordinates[at + i] *= share + (1 - share) * round;
+  }
+  const AdaptOptions options = options_on(mesh);
+  EXPECT_TRUE(options.make.geometry->closest({0.5, 0, 0}, 0.1));
+  for (int trial = 0; trial < 10; ++trial) {
+    const double angle = test::uniform(random, 0, 6), level = test::uniform(random, -0.6, 0.6);
+    std::vector<double> values(mesh.vertex_count());
+    for (std::size_t v = 0; v < values.size(); ++v)
+      values[v] = std::cos(angle) * mesh.coordinates[d * v] +
+                  std::sin(angle) * mesh.coordinates[d * v + 1] - level;
+    const CutMesh cut = meshadapt::cut(executor, mesh, values, {});
+    AdaptedMesh adapted;
+    ASSERT_NO_THROW(adapted = adapt(executor, cut.mesh, constant_metric(cut.mesh, 0.25), options));
+    EXPECT_EQ(test::joined(check_adapted(executor, cut.mesh, adapted.mesh, tolerance)), "");
+    AnyMesh smaller = cut.mesh;
+    for (double& x : smaller.coordinates) x *= 0.97;
+    EXPECT_THROW(adapt(executor, smaller, constant_metric(smaller, 0.25), options), InputError);
+  }
 }
 
 TEST(Geometry, RefusesATolerance) {

@@ -190,6 +190,43 @@ TEST(RepeatedCalls, ComeToThinLayersAlongACylinder) {
   }
 }
 
+/// Sizes that differ by 1e6 to 1e8 in one body, which is thinner than the larger ones: the first
+/// call must come to the lengths asked for, instead of leaving edges for the next ones to split.
+TEST(RepeatedCalls, ComeToExtremeStretchAtOnce) {
+  Random random(11);
+  for (int trial = 0; trial < 40; ++trial) {
+    const int dimension = 2 + trial % 2;
+    AnyMesh mesh = test::make_grid(test::unit_grid(
+        dimension, 3 + static_cast<int>(test::below(random, dimension == 2 ? 4 : 1))));
+    test::jiggle(mesh, random, 0.2);
+    const double ratio = std::pow(10, test::uniform(random, 6, 8));
+    const double size = 1 / test::uniform(random, 5, dimension == 2 ? 60 : 15);
+    SCOPED_TRACE("trial " + std::to_string(trial) + ", ratio " + std::to_string(ratio) + ", size " +
+                 std::to_string(size));
+    const auto metric_on = [&](const AnyMesh& at) {
+      const double fine = 1 / (size * size), coarse = fine / (ratio * ratio);
+      return dimension == 2 ? test::metric_field<2>(at,
+                                                    [&](std::uint32_t) {
+                                                      return Metric<2>{{fine, 0, coarse}};
+                                                    })
+                            : test::metric_field<3>(at, [&](std::uint32_t) {
+                                return Metric<3>{{fine, 0, coarse, 0, 0, coarse}};
+                              });
+    };
+    std::size_t first = 0;
+    for (int call = 0; call < 3; ++call) {
+      const AdaptedMesh result = adapt(executor, mesh, metric_on(mesh));
+      const MeshStatistics found = measure(executor, result.mesh, &result.metric);
+      mesh = result.mesh;
+      if (call == 0) first = element_count(mesh);
+      EXPECT_LT(static_cast<double>(found.edges_long),
+                0.5 * static_cast<double>(found.edge_length.count))
+          << "call " << call;
+    }
+    EXPECT_LT(static_cast<double>(element_count(mesh)), 1.5 * static_cast<double>(first + 50));
+  }
+}
+
 TEST(RepeatedCalls, OnAFewElements) {
   Random random(7);
   for (int trial = 0; trial < 60; ++trial) {

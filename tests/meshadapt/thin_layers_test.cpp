@@ -82,7 +82,7 @@ double longest_edge(const Layers& layers, const AnyMesh& mesh) {
 /// In 2D the sides of the thinnest layers between blocks keep some longer edges (decision 51).
 double most_allowed(const Layers& layers) {
   if (layers.dimension == 3) return 1.9;
-  return layers.thickness < 0.025 * layers.size ? 2.3 : 1.6;
+  return layers.thickness < 0.025 * layers.size ? 2 : 1.6;
 }
 
 class ThinLayers : public testing::TestWithParam<int> {};

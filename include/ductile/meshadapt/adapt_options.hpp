@@ -37,7 +37,7 @@ struct Rules {
   double layer_split_keeps = 0.5;  ///< see poor_quality
   /// A split is refused if it makes an element worse than min(accepted_quality, split_keeps * worst
   /// quality before). For an edge longer than overlong_edge that bound is divided by the square of
-  /// the ratio, also below poor_quality.
+  /// the ratio, except below poor_quality.
   double split_keeps = 0.3;
   double overlong_edge = 2;     ///< see split_keeps
   double shortest_split = 0.5;  ///< a split is refused if it makes an edge shorter than this
