@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/mesh_arrays.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "ductile/meshadapt/error.hpp"
 #include "mesh/array_lengths.hpp"
@@ -78,10 +79,10 @@ std::vector<NamedField> named_fields(const AnyField& field, const std::string& n
   std::size_t first = 0;
   for (const AnyField::Type type : field.types) {
     const auto count = static_cast<std::size_t>(component_count(type, field.dimension));
-    const std::string number = std::to_string(fields.size() + 1);
-    fields.push_back({.name = field.types.size() == 1 ? name : name + "_" + number,
-                      .type = type,
-                      .values = components_of(field, first, count)});
+    std::string its_name = name;
+    if (field.types.size() > 1) its_name.append("_").append(std::to_string(fields.size() + 1));
+    fields.push_back(
+        {.name = std::move(its_name), .type = type, .values = components_of(field, first, count)});
     first += count;
   }
   return fields;

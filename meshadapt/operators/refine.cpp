@@ -14,7 +14,6 @@
 namespace ductile::meshadapt {
 
 using runtime::few_nanoseconds;
-using runtime::make_filled;
 using runtime::parallel_for;
 using runtime::PhaseTimer;
 

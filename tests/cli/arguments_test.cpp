@@ -59,7 +59,7 @@ TEST(Arguments, KnowsTheLettersOfAName) {
         std::swap(word[i], word[j]);
         if (word == option.name) continue;
         try {
-          Arguments(names, std::vector<std::string>{word, "1"});
+          const Arguments accepted(names, std::vector<std::string>{word, "1"});
           ADD_FAILURE() << word;
         } catch (const UnknownOption& error) {
           EXPECT_TRUE(
