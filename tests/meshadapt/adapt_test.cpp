@@ -105,7 +105,7 @@ TEST_P(Adapt, KeepsRegionsInterfacesReferencesAndWhatIsRequired) {
 }
 
 TEST_P(Adapt, GivesTheSameBytesAtEachThreadCountAndInEachRun) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   const AnyMesh mesh = rich_mesh();
   const AnyField metric = layered(mesh, dimension() == 2 ? 2000 : 500);
   const AdaptedMesh first = adapt(Executor({.threads = 1}), mesh, metric);
@@ -117,7 +117,7 @@ TEST_P(Adapt, GivesTheSameBytesAtEachThreadCountAndInEachRun) {
 }
 
 TEST_P(Adapt, GivesTheSameBytesByColours) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   const AnyMesh mesh = rich_mesh();
   const AnyField metric = layered(mesh, 500);
   const AdaptOptions options{.by_colours = true};
@@ -231,7 +231,7 @@ TEST_P(Adapt, LeavesClosedCracksOpen) {
 
 /// Nearly all elements of the mesh are slivers in this metric.
 TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), dimension() == 2 ? 10 : 3));
   const AnyField metric = dimension() == 2 ? sheets(mesh, 0.5, 2e-4) : sheets(mesh, 0.7, 0.7 / 200);
   const AdaptedMesh adapted = adapt(Executor({.threads = 1}), mesh, metric);
@@ -403,7 +403,7 @@ TEST_P(Adapt, OnlyDoesWhatItMay) {
 }
 
 TEST_P(Adapt, MakesBetterElementsIfThorough) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 8));
   const AnyField metric = layered(mesh, dimension() == 2 ? 10000 : 3000);
   const Executor executor({.threads = 2});

@@ -103,7 +103,7 @@ TYPED_TEST(CoarsenIn, MakesNoLongEdgesAndNoPoorElements) {
 }
 
 TYPED_TEST(CoarsenIn, DoesNotDependOnThreads) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   constexpr int Dim = TypeParam::value;
   for (const auto strategy : {runtime::Strategy::tiles, runtime::Strategy::colours})
     for (const std::uint64_t seed : {3U, 4U}) {

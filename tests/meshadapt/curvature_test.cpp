@@ -322,7 +322,7 @@ MantleEdges mantle_edges(const AnyMesh& any) {
 /// Around the cylinder chords are 0.28, along it edges are as long as asked for: a few of about 1.
 /// Equal sizes of 0.28 would make 2 pi / (0.28^2 sqrt(3) / 4) = 185 facets or more.
 TEST(CurvedSizes, AloneMakeACylinderOfLongElements) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const AnyMesh any = test::truncated_cone(16, 1);
   AdaptOptions options;
   options.make.hausdorff_tolerance = 0.01;

@@ -235,7 +235,7 @@ double vertices_off(const AnyMesh& mesh, std::int32_t reference, double radius) 
 
 /// Each call adapts the result of the previous one, to sizes that are small elsewhere.
 TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   constexpr double tolerance = 4e-3;
   constexpr int calls = 10;
   const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 14, 1.5);
@@ -269,7 +269,7 @@ TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
 }
 
 TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 50 : 12, 2);
   test::Random random(3);
   AnyField metric = test::layer_field(mesh, random, 0.2);
@@ -376,7 +376,7 @@ TEST(CurvedBoundaries, OfThinShellsAreCoarsened) {
 /// The shells are thinner than a few tolerances, and the chords of their facets are about as far
 /// off.
 TEST(CurvedBoundaries, OfThinShellsLoseNothingInManyCalls) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   test::Random random(55);
   const Executor executor({.threads = 2});
   for (int trial = 0; trial < 6; ++trial) {

@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(Parts, CurvedPart,
                          });
 
 TEST_P(CurvedPart, StaysWhatItIsInTenCalls) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   // Chords of the wall of the plate's hole come close to its sides, so that they are flat in the
   // next model. The ellipse has a least radius of five tolerances and no corners.
   const double most_off = has_geometry() ? 1.3 : fine() ? 1.4 : part().most_off;

@@ -62,7 +62,7 @@ AdaptedMesh coarsened(const AnyMesh& mesh, double size, double tolerance) {
 
 /// The warning gives the faces' distance from flat; following its advice coarsens them.
 TEST(FlatNoise, IsToldWhereDigitsDoNotShowIt) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   int trials = 0, told = 0;
   for (auto seed = test::first_trial(); seed < test::end_of_trials(60); ++seed) {
     Random random(seed);

@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, GeometryOf, testing::Values(2, 3),
                          [](const auto& at) { return std::to_string(at.param) + "D"; });
 
 TEST_P(GeometryOf, ABallKeepsItRoundInTenCalls) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const Executor executor({.threads = 2});
   for (const bool in_one_piece : {true, false}) {
     const AnyMesh first = start(in_one_piece);
@@ -250,7 +250,7 @@ TEST_P(GeometryOf, SizesAtCurvedBoundariesAreBoundedByTheTolerance) {
 }
 
 TEST_P(GeometryOf, TheSameBallGivesTheSameBytesAtAnyNumberOfThreads) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   const AnyMesh first = start(false);
   std::vector<std::uint64_t> expected;
   for (const int threads : {1, 2, 3, 4, 8}) {

@@ -62,7 +62,7 @@ double farthest_from(const AnyMesh& mesh, const test::Level& distance) {
 
 /// Expects that cutting one sphere out of five grids gives similar numbers of facets.
 void expect_alike(double least, double noise) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   constexpr double size = 0.2, tolerance = 0.01;
   std::vector<std::size_t> counts;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -88,7 +88,7 @@ TEST(LevelSet, WhereZerosKeepAwayFromVerticesAsMany) { expect_alike(0.05, 0); }
 TEST(LevelSet, WhereTheyAreOffAtRandomAsMany) { expect_alike(0, 0.02); }
 
 TEST(LevelSet, GivesTheSameBytesAtEachThreadCount) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   const AnyMesh mesh = test::cut_out({10, 1.5, 7, 0.03, 0.01}, test::torus_level);
   const AdaptedMesh first = adapted(mesh, 0.3, 0.02, 1);
   for (const int threads : test::thread_counts) {
@@ -99,7 +99,7 @@ TEST(LevelSet, GivesTheSameBytesAtEachThreadCount) {
 }
 
 TEST(LevelSet, RandomGridsStayValid) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   test::Random random(5);
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
@@ -289,7 +289,7 @@ AnyMesh voxels(int dimension, double size, test::Random& random) {
 
 /// The ideal number of equilateral triangles is 322.
 TEST(LevelSet, VoxelsBecomeTheSphereThatTheyApproximate) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   test::Random random(11);
   for (const double size : {0.08, 0.07, 0.06}) {
     SCOPED_TRACE(size);
@@ -311,7 +311,7 @@ double sharp_length(const AnyMesh& mesh) {
 /// A block whose upper side is a slope, at angles of 73 to 107 degrees to the other sides. Its
 /// edges have a total length of 10.12.
 TEST(LevelSet, ASlopeOfVoxelsHasAlmostStraightRims) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   for (const int n : {24, 32}) {
     SCOPED_TRACE(n);
     test::Grid grid = test::unit_grid(3, n);

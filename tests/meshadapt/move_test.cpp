@@ -196,7 +196,7 @@ TYPED_TEST(MoveIn, NothingMovesWithoutADisplacement) {
 }
 
 TYPED_TEST(MoveIn, TheResultDoesNotDependOnThreads) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   constexpr int Dim = TypeParam::value;
   const AnyMesh mesh =  // in 2D with several blocks of the preconditioner
       box_with_ball<Dim>(Executor({.threads = 1}), 0.3, 0.18, Dim == 2 ? 80 : 7);

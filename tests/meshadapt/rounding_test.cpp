@@ -181,7 +181,7 @@ std::vector<Share> shares(AnyMesh mesh, double size, int calls) {
 /// With a few hundred edges the share in range varies by chance. If the boundary cannot be
 /// coarsened, a third or more are out of range. With fewer edges the share means nothing.
 TEST(Rounding, LeavesFlatWhatIsFlat) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   int compared = 0, poorer = 0;
   double sum = 0;
   for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {

@@ -111,7 +111,7 @@ void compare(const Sheets& sheets, const Parts& parts, const Facet& facet, doubl
 }
 
 TEST(Sheets, CoverATriangleOnlyIfAllOfItIsClose) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   test::Random random(2);
   const auto parts = wave(7);
   std::array<int, 2> count{};

@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, SurfaceFunctions,
                          [](const auto& at) { return std::string(at.param.name); });
 
 TEST_P(SurfaceFunctions, HaveAllVerticesOnThemInTenCalls) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const Executor executor({.threads = 2});
   AnyMesh mesh = mesh_of(GetParam());
   const AdaptOptions options = options_with(executor, mesh, {{1, GetParam().closest}});
@@ -162,7 +162,7 @@ TEST_P(SurfaceFunctions, HaveAllVerticesOnThemInTenCalls) {
 }
 
 TEST_P(SurfaceFunctions, NeedNoGeometry) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const Executor executor({.threads = 2});
   AnyMesh mesh = mesh_of(GetParam());
   AdaptOptions options;
@@ -176,7 +176,7 @@ TEST_P(SurfaceFunctions, NeedNoGeometry) {
 }
 
 TEST_P(SurfaceFunctions, GiveTheSameBytesAtAnyNumberOfThreads) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const AnyMesh first = mesh_of(GetParam());
   std::vector<std::uint64_t> expected;
   for (const int threads : {1, 2, 3, 4, 8}) {

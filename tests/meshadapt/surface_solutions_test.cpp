@@ -69,7 +69,7 @@ double interpolation_error(const AnyMesh& mesh, const Function& f) {
 }
 
 TEST(SurfaceSolutions, ErrorsFallAtTheOptimalRate) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   const Function front = [](const Vector<3>& p) {
     return std::tanh((p[1] - 0.3 * p[0] - 0.35) / 0.05);
   };

@@ -131,7 +131,7 @@ TEST(Surface, FollowsAnAnisotropicMetric) {
 }
 
 TEST(Surface, IsTheSameAtAnyNumberOfThreads) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   const AnyMesh mesh = cylinder(40, true);
   const AnyField metric = constant_metric(mesh, 0.05);
   const auto on = [&](int threads) {

@@ -126,7 +126,7 @@ TYPED_TEST(TransferIn, IsExactForLinearFieldsAlways) {
 }
 
 TYPED_TEST(TransferIn, ProjectionKeepsIntegrals) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::takes_long;
   constexpr int Dim = TypeParam::value;
   const AnyMesh old_mesh = holed_grid<Dim>(6, 3);
   const AnyField field = field_on<Dim>(old_mesh, front<Dim>);
@@ -235,7 +235,7 @@ TYPED_TEST(TransferIn, TellsWhatTheNewMeshLeavesOut) {
 }
 
 TYPED_TEST(TransferIn, ConvergesInTheSecondOrder) {
-  if (test::sanitized) GTEST_SKIP();
+  if (test::sanitized) GTEST_SKIP() << test::takes_long;
   constexpr int Dim = TypeParam::value;
   const auto wave = [](std::size_t k, const Vector<Dim>& p) {
     return std::sin(3 * p[0] + static_cast<double>(k)) * std::cos(2 * p[1]);
@@ -282,7 +282,7 @@ TYPED_TEST(TransferIn, InterpolatesAtAnyPoints) {
 }
 
 TYPED_TEST(TransferIn, DoesNotDependOnThreads) {
-  if (test::address_sanitized) GTEST_SKIP();
+  if (test::address_sanitized) GTEST_SKIP() << test::compares_threads;
   constexpr int Dim = TypeParam::value;
   const int n = Dim == 2 ? 30 : 6;
   const AnyMesh old_mesh = holed_grid<Dim>(n, 11), new_mesh = holed_grid<Dim>(n, 12);

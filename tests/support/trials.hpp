@@ -1,7 +1,7 @@
 /// @file
 /// The number of random cases a test tries, DUCTILE_TRIALS, starting at DUCTILE_FIRST_TRIAL.
-/// Sanitizers try few; a search for faults tries many. Tests that take long and that a smaller test
-/// stands for under a sanitizer are skipped there: `if (test::sanitized) GTEST_SKIP();`.
+/// Sanitizers try few; a search for faults tries many. A test that takes long there says why it is
+/// left out: `if (test::sanitized) GTEST_SKIP() << test::takes_long;`.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +18,10 @@ namespace ductile::meshadapt::test {
 #endif
 inline constexpr bool address_sanitized = DUCTILE_SANITIZED_BY(address);
 inline constexpr bool sanitized = address_sanitized || DUCTILE_SANITIZED_BY(thread);
+inline constexpr const char* takes_long =
+    "takes long under a sanitizer, which runs the same code in smaller tests";
+inline constexpr const char* compares_threads =
+    "compares the results of several numbers of threads, which the release build runs";
 
 inline std::uint64_t setting(const char* name, std::uint64_t otherwise) {
   const char* text = std::getenv(name);
